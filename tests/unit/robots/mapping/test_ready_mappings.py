@@ -126,6 +126,16 @@ def test_doubt_about_the_place_ends_by_a_given_pose_or_by_searching(file: str) -
 
 
 @played(with_ready, "nav2.yaml")
+async def test_turning_and_driving_by_odometry(robot: Ready) -> None:
+    await robot.do("spin", -90)
+    assert robot.lab.pose()[2] == pytest.approx(-90, abs=4)
+    await robot.do("drive_on_heading", 0.3, 0.2)
+    assert near(robot.lab, 0, -0.3)
+    assert (await robot.reason("drive_on_heading", 2, 0.2)).startswith("aborted(723,")
+    assert robot.lab.world.robot(None).touching == frozenset()
+
+
+@played(with_ready, "nav2.yaml")
 async def test_feedback_of_nav2_is_there_while_the_robot_is_on_its_way(robot: Ready) -> None:
     tried.update({("nav2.yaml", "distance_left"), ("nav2.yaml", "recoveries")})
     await robot.do("navigate_to", 2, 0, 0)

@@ -88,7 +88,7 @@ async def test_a_relocalising_robot_finds_its_place_by_turning(
     await relocalise(lab, service)
     await lab.clock.sleep(2.0)
     assert variances(heard[-1])[0] > 1.0, "nothing is found at rest"
-    await lab.drive(8.0, 0.0, 1.0)
+    await lab.drive(12.0, 0.0, 1.0)
     assert variances(heard[-1]) == pytest.approx(SURE, abs=0.01)
     assert error(lab, heard[-1]) < 0.05
 

@@ -140,8 +140,8 @@ SERVICES: Final = _names(
 )
 ACTIONS: Final = _names(
     """
-    dock dock_drive_action dock_robot drive_distance follow_waypoints gripper_controller/gripper_cmd
-    move_base navigate_through_poses navigate_to_pose rotate_angle undock undock_robot
+    dock dock_drive_action dock_robot drive_distance drive_on_heading follow_waypoints
+    gripper_controller/gripper_cmd move_base navigate_through_poses navigate_to_pose rotate_angle spin undock undock_robot
     """
 )
 """All that the simulator can offer below a robot's namespace."""

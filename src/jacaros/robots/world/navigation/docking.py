@@ -1,4 +1,4 @@
-"""Docking and undocking, and their actions: Nav2's, the Kobuki's, and the Create 3's with its short motions."""
+"""Docking, undocking and short motions, and their actions: Nav2's, the Kobuki's, and the Create 3's."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -6,6 +6,7 @@ from typing import Any
 
 from jacaros.robots.plane.pose import Placement, distance
 from jacaros.robots.ros.action import GoalStatus
+from jacaros.robots.ros.message import to_seconds
 from jacaros.robots.world.data.world import Dock
 from jacaros.robots.world.graph.frames import FrameUnknown, on_map, pose_fault
 from jacaros.robots.world.graph.on_graph import ActiveGoal, GoalExecution
@@ -19,6 +20,8 @@ STAGING = 0.5
 DOCK_NOT_IN_DB, DOCK_NOT_VALID, FAILED_TO_STAGE, FAILED_TO_CONTROL, FAILED_TO_CHARGE = 901, 902, 903, 905, 906
 DOCKING_TIMEOUT = 907
 """Error codes of Nav2's ``DockRobot`` and ``UndockRobot``."""
+SPIN_COLLISION_AHEAD, DRIVE_COLLISION_AHEAD = 703, 723
+"""Error codes of Nav2's ``Spin`` and ``DriveOnHeading``."""
 NAV_TO_STAGING_POSE, INITIAL_PERCEPTION, CONTROLLING, WAIT_FOR_CHARGE = 1, 2, 3, 4
 """States of the feedback of ``DockRobot``."""
 _CHARGES_WITHIN = 2.0
@@ -122,8 +125,8 @@ class Docking:
         with self.navigator.wheels.claimed() as claim:
             for sign in (-1.0, 1.0):
                 await self.navigator.straight(claim, sign * STAGING, _BACK_SPEED, limit=over - clock.now())
-                pose = self.navigator.pose()
-                if distance((pose.x, pose.y), (dock.pose.x, dock.pose.y)) > dock.radius + _UNDOCKED:
+                x, y, _ = self._at.robot.pose  # of the contacts, whatever localisation says
+                if distance((x, y), (dock.pose.x, dock.pose.y)) > dock.radius + _UNDOCKED:
                     return
         if clock.now() >= over:
             raise NavigationFailure(DOCKING_TIMEOUT, f"still in dock '{dock.name}' after {limit:g} s")
@@ -162,7 +165,7 @@ class Docking:
         return planner.grid.clearance_at(place.x, place.y) >= planner.radius + GOAL_MARGIN
 
     def offer_nav2(self) -> None:
-        """``/dock_robot`` and ``/undock_robot``."""
+        """``/dock_robot``, ``/undock_robot``, ``/spin`` and ``/drive_on_heading``."""
         self.navigator.serve(
             "/dock_robot",
             "nav2_msgs/action/DockRobot",
@@ -170,6 +173,8 @@ class Docking:
             lambda goal: None if goal.use_dock_id else pose_fault(goal.dock_pose.pose),
         )
         self.navigator.serve("/undock_robot", "nav2_msgs/action/UndockRobot", self._undock_robot)
+        self.navigator.serve("/spin", "nav2_msgs/action/Spin", self._spin)
+        self.navigator.serve("/drive_on_heading", "nav2_msgs/action/DriveOnHeading", self._drive_on_heading)
 
     def offer_create3(self) -> None:
         """``/dock``, ``/undock``, ``/drive_distance`` and ``/rotate_angle``."""
@@ -285,7 +290,25 @@ class Docking:
             )
         return self._moved(made, request.angle, 0.05, "rad")
 
-    def _moved(self, made: float, wanted: float, tolerance: float, unit: str) -> Mapping[str, Any]:
+    async def _spin(self, goal: ActiveGoal) -> Mapping[str, Any]:
+        angle = float(goal.request.target_yaw)
+        with self.navigator.wheels.claimed() as claim:
+            made = await self.navigator.rotate(claim, angle, self.navigator.pace.turn_rate)
+        return self._moved(made, angle, 0.05, "rad", SPIN_COLLISION_AHEAD)
+
+    async def _drive_on_heading(self, goal: ActiveGoal) -> Mapping[str, Any]:
+        request = goal.request
+        metres, limit = float(request.target.x), to_seconds(request.time_allowance) or math.inf
+        speed = min(max(abs(request.speed), 0.02), self._at.robot.description.limits.speed)
+        with self.navigator.wheels.claimed() as claim:
+            made = await self.navigator.straight(
+                claim, metres, speed, lambda left: goal.feedback(distance_traveled=abs(metres) - left), limit
+            )
+        return self._moved(made, metres, 0.02, "m", DRIVE_COLLISION_AHEAD)
+
+    def _moved(
+        self, made: float, wanted: float, tolerance: float, unit: str, code: int = 0
+    ) -> Mapping[str, Any]:
         if abs(made) < abs(wanted) - tolerance:
-            raise NavigationFailure(0, f"blocked after {abs(made):.2f} {unit}")
+            raise NavigationFailure(code, f"blocked after {abs(made):.2f} {unit}")
         return {"pose": self.navigator.odometry_pose()}

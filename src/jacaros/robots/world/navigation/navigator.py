@@ -175,7 +175,8 @@ class Navigator:
         while made < abs(metres) - 0.005 and waited < _GIVE_UP and self.time.clock.now() < over:
             reach = sign * (0.06 + speed * _BRAKES_IN)
             command = STOP
-            if self._clearer(last, reach):
+            # The laser sees what is truly ahead, also when the robot is lost.
+            if self._clearer(self.robot.placement, reach):
                 left = abs(metres) - made
                 wanted = min(speed, max(0.03, left * 1.5))
                 off = begin.cosine * last.sine - begin.sine * last.cosine

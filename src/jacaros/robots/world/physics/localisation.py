@@ -23,15 +23,18 @@ UPDATE_ANGLE = 0.2
 """Radians of odometry after which they do (``update_min_a``)."""
 _SAME = 1e-6
 _BEAMS = 24
-_ON_WALL, _ON_DOCK = 0.15, 0.3
-_MATCH = 0.7
+_ON_WALL, _ON_DOCK = 0.2, 0.3
+_MATCH = 0.9
 """Share of the echoes that must lie on walls of the map for a scan to match."""
 _WORSE = 0.25
+"""Sum of the shares by which a possible pose may match worse than the best one in a search."""
 _APART, _HEADINGS = 0.25, 12
 _MOST_POSES = 30_000
 """Poses of the lattice; its metres are doubled until a large map has at most these."""
 _ONE_PLACE = 0.1
-"""Variance in m² and rad² up to which possible poses count as one, which is adopted."""
+"""Variance in m² and rad² up to which possible poses count as one."""
+_SURE_ENOUGH = 0.3
+"""Variance of the estimate in m² at which a search ends with that one."""
 _ANY_HEADING = PI * PI / 3.0
 
 
@@ -78,9 +81,8 @@ class ScanMatch:
         robot, world = self._robot, self._world
         self._laser.segments = world.segments
         ranges = self._laser.scan(robot.x, robot.y, robot.yaw, world.others(robot))
-        short = 0.5 * self._grid().resolution  # the wall may be the edge of the map
         self._echoes = [
-            ((reach - short) * cosine, (reach - short) * sine)
+            (reach * cosine, reach * sine)
             for reach, (sine, cosine) in zip(ranges, self._beams, strict=False)
             if math.isfinite(reach) and robot.description.laser.enabled
         ]
@@ -104,11 +106,13 @@ class ScanMatch:
         allowed, near = (1.0 - least) * count + 1e-9, max(_ON_WALL, grid.resolution)
         # As `Grid.cell`, in line: a search does this 100,000 times.
         per_metre, width, height, clearance = 1.0 / grid.resolution, grid.width, grid.height, grid.clearance
+        beside = near * per_metre  # a wall may be the edge of the map
         left, down, cosine, sine = place.x - grid.x_min, place.y - grid.y_min, place.cosine, place.sine
         for x, y in self._echoes:
             column = int((left + cosine * x - sine * y) * per_metre + 1.0)
             row = int((down + sine * x + cosine * y) * per_metre + 1.0)
-            on_map = 0 < column < width - 1 and 0 < row < height - 1
+            on_map = -beside < column < width + beside and -beside < row < height + beside
+            column, row = min(max(column, 1), width - 2), min(max(row, 1), height - 2)
             if not on_map or clearance[row * width + column] > near:
                 missed += 1
                 if missed > allowed:
@@ -130,9 +134,9 @@ class ScanMatch:
             share = self.share(place, best + worse - _WORSE)
             if share > 0.0:
                 best = max(best, share)
-                found.append((worse - share, place))
-        kept = [(best + less, place) for less, place in found if best + less <= _WORSE]
-        return sorted(kept, key=lambda pair: pair[0])
+                found.append((worse, share, place))
+        summed = [(worse + best - share, place) for worse, share, place in found]
+        return sorted((each for each in summed if each[0] <= _WORSE), key=lambda pair: pair[0])
 
     def everywhere(self) -> Iterable[tuple[float, Placement]]:
         """Return poses all over the map: a lattice through the true pose, which so is one of them."""
@@ -228,21 +232,22 @@ class SimulatedLocalisation:
                 return
             if not self._searching:
                 self.lost = not self._corrects(self.pose(), SURE, SURE)
-                if self._match.share(self.pose()) < _MATCH:
-                    self._grow()
+                share = self._match.share(self.pose())
+                if share < _MATCH:
+                    self._grow(2.0 + 14.0 * (1.0 - share / _MATCH))
                     return
         if moved:
             least = self._narrow() if self._searching else FOUND
             halved = max(least[0], 0.5 * self.variances[0]), max(least[1], 0.5 * self.variances[1])
             self.variances = FOUND if halved == FOUND else halved
-            if self._searching and max(halved) <= _ONE_PLACE:
+            if self._searching and max(least) <= _ONE_PLACE and halved[0] <= _SURE_ENOUGH:
                 self._searching, (_, self.map_to_odom) = False, self._possible[0]
                 self.lost = not self._corrects(self.pose(), SURE, SURE)
 
-    def _grow(self) -> None:
-        """Double the standard deviations, up to those of a pose anywhere on the map."""
+    def _grow(self, factor: float) -> None:
+        """Multiply the standard deviations, up to those of a pose anywhere on the map."""
         both = zip(self.variances, FOUND, self._match.spread(), strict=True)
-        xy, heading = (max(now, min(4.0 * max(now, least), most)) for now, least, most in both)
+        xy, heading = (max(now, min(factor**2 * max(now, least), most)) for now, least, most in both)
         self.variances = xy, heading
 
     def _narrow(self) -> tuple[float, float]:
