@@ -276,3 +276,61 @@ patience(300000) :- not slowest_percent(_).
 
 +!learn_rate(Ms)
   <- -+slowest_percent(Ms).
+
+/* Doubt about one's place: lost, of the mappings of Nav2 and move_base, or the program's own */
+
+// The robot stops what it does, searches, and goes on.  More urgent than all that drives: other plans that need the wheels wait.
+@navigation__lost[urgency(20), needs(wheels)]
++lost
+  <- !find_place;
+     !return_to_work.
+
+// A person has shown the robot its place, after it had given up.
+@navigation__found[urgency(20), needs(wheels)]
+-lost : held(lost)
+  <- !return_to_work;
+     !release(lost).
+
++!find_place
+  <- !begin_search;
+     !search(1).
+
+// The robot stands still, and this goal fails: a program's plan for -!find_place can ask for help.
+-!find_place
+  <- !stand_for(lost);
+     .fail(error(lost), error_msg("the robot does not find its place on the map"), env_failure_reason(lost)).
+
++!begin_search
+  <- relocalise.
+
+// Some robots search without being asked.
+-!begin_search.
+
++!search(_) : not lost.
+
++!search(Number) : Number <= 4
+  <- !turn_on_the_spot(360);
+     !drive_to_open_ground;
+     !search(Number + 1).
+
++!turn_on_the_spot(Degrees)
+  <- spin(Degrees).
+
+// Without Nav2, by the operation of a TurtleBot.
+-!turn_on_the_spot(Degrees)
+  <- drive(0, 45, Degrees / 45).
+
++!drive_to_open_ground : not lost.
+
++!drive_to_open_ground
+  <- drive_on_heading(0.7, 0.2).
+
+// Something is in the way: try another direction.
+-!drive_to_open_ground
+  <- !turn_on_the_spot(130).
+
+// An interrupted drive is repeated in any case; work that has begun at a place continues there.
++!return_to_work : .desire(arrived(Place))
+  <- !go_to(Place).
+
++!return_to_work.
