@@ -18,6 +18,9 @@ CORNERS = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
 REACHED = 0.05
 """Distance within which a corner counts as visited, in metres."""
 
+LEFT = 0.5
+"""Distance from a corner at which a visit has ended."""
+
 
 class Visit(NamedTuple):
     """A visit to a corner, from ``begin`` to ``end`` (s)."""
@@ -49,16 +52,20 @@ def check(truth: GroundTruth, cycles: int = 10, near: float = REACHED) -> Verdic
 
 
 def visits(path: Sequence[PathSample], near: float = REACHED) -> list[Visit]:
-    """Return all visits to corners, oldest first."""
+    """Return all visits to corners, oldest first.
+
+    A robot that brakes late and returns has not left the corner.
+    """
     found: list[Visit] = []
     at = None
     for sample in path:
+        if at is not None and distance(sample, *CORNERS[at]) > LEFT:
+            at = None
         corner = next((n for n, (x, y) in enumerate(CORNERS) if distance(sample, x, y) <= near), None)
-        if corner is None or corner != at:
+        if corner is not None and corner != at:
             at = corner
-            if corner is not None:
-                found.append(Visit(corner, sample.time, sample.time))
-        else:
+            found.append(Visit(corner, sample.time, sample.time))
+        elif corner is not None:
             found[-1] = found[-1]._replace(end=sample.time)
     return found
 

@@ -19,6 +19,9 @@ rounds(4).
      !patrol([1, 2, 3, 0], N);
      .stopMAS.
 
+-!keep_charged
+  <- .stopMAS(0, 1).  // the exit status reports the failure
+
 +!arrived(0).
 
 +!arrived(Room)

@@ -16,11 +16,14 @@ recharges(0).
 +!arrived(_) : shift(N) & recharges(N)
   <- .stopMAS.
 
+-!keep_charged
+  <- .stopMAS(0, 1).  // the exit status reports the failure
+
 // The dock charges a robot that stands in it: no need to drive in and out.
 +!drive_into_dock
   <- !go_to(dock).
 
-+!drive_out_of_dock : recharges(N)
++!drive_out_of_dock : battery_full & recharges(N)
   <- -+recharges(N + 1).
 
 { include("$jacaros/navigation.asl") }

@@ -180,7 +180,10 @@ place(b, 2, 0, 0).
      -+battery(29, charging);
      .wait(10000);
      !assert_false(hopeless(_));
-     -+battery(28, charging);
+     -+battery(20, charging);  // the gauge corrects itself
+     .wait(10000);
+     !assert_false(hopeless(_));
+     -+battery(18, charging);
      .wait(100);
      !assert_true(hopeless(no_current)).
 
@@ -228,6 +231,25 @@ place(b, 2, 0, 0).
 
 -!hope[env_failure_reason(Reason)]
   <- +hopeless(Reason).
+
+@asks_a_person_when_it_cannot_charge[test, timeout(200000)]
++!test_help
+  <- !fakes;
+     !fake_action(dock, failed(aborted(0, "not seen"), "the dock is not seen"));
+     !fake_action(ask(_, _, retry), after(60000));
+     +battery(10, discharging);
+     !!keep_charged;
+     .wait(60000);
+     !assert_did(dock, 3);
+     !assert_true(held(battery));
+     !fake_action(dock, after(500));
+     .wait(8000);
+     -+battery(100, full);
+     .wait(2000);
+     !assert_did(ask(_, _, _), 1);
+     !assert_did(undock, 1);
+     !assert_false(held(battery));
+     .drop_desire(keep_charged).
 
 @docks_anew_when_there_is_no_current[test]
 +!test_anew

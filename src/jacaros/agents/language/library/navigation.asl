@@ -13,6 +13,8 @@
 //
 // Plans before the include take precedence, so a program can override every step below.
 
+{ include("$jacaros/help.asl") }
+
 attempts_allowed(N) :- attempts(N).
 attempts_allowed(3) :- not attempts(_).
 
@@ -60,6 +62,10 @@ patience(300000) :- not slowest_percent(_).
 // The goal was cancelled from outside: do not retry.
 -!attempt(_, _)[error(Error), error_msg(Text), env_failure_reason(canceled)]
   <- .fail(error(Error), error_msg(Text), env_failure_reason(canceled)).
+
+// Without current, do not try until the battery is empty.
+-!attempt(wait_until_charged, Number)[error_msg(Text), env_failure_reason(no_current)] : Number >= 3
+  <- .fail(error(no_current), error_msg(Text), env_failure_reason(no_current)).
 
 // The step failed: recover from the reason, and retry.
 -!attempt(Step, Number)[env_failure_reason(Reason)] : attempts_allowed(Most) & Number < Most
@@ -204,11 +210,29 @@ patience(300000) :- not slowest_percent(_).
 // A robot that cannot charge stands still, so that its battery lasts until a person comes.
 -!charge_first[error(Error), error_msg(Text), env_failure_reason(Reason)]
   <- !stand_for(battery);
-     .fail(error(Error), error_msg(Text), env_failure_reason(Reason)).
+     !advice(Reason, Answer);
+     if (Answer \== retry) {
+        .fail(error(Error), error_msg(Text), env_failure_reason(Reason))
+     };
+     !charge_again.
 
 -!charge_first[error(Error), error_msg(Text)]
   <- !stand_for(battery);
-     .fail(error(Error), error_msg(Text)).
+     !advice(Error, Answer);
+     if (Answer \== retry) {
+        .fail(error(Error), error_msg(Text))
+     };
+     !charge_again.
+
++!advice(Reason, Answer)
+  <- !help(Reason, Answer).
+
+// Nobody answers.
+-!advice(_, stop).
+
++!charge_again
+  <- !release(battery);
+     !charge_first.
 
 // Drive into the dock, wait until the battery is full, and drive out.
 +!dock_and_charge
@@ -258,7 +282,8 @@ patience(300000) :- not slowest_percent(_).
   <- .wait(percent_left(_), 10000).
 
 -!gain_a_percent
-  <- .fail(error(action_failed), error_msg("the battery is not charging"), env_failure_reason(no_current)).
+  <- .abolish(fallen);
+     .fail(error(action_failed), error_msg("the battery is not charging"), env_failure_reason(no_current)).
 
 // A sign that no current flows counts when it has lasted: sensors lag, and contacts flicker.
 +!get_fuller(Before)
@@ -270,6 +295,12 @@ patience(300000) :- not slowest_percent(_).
 
 +!fuller_than(Before) : percent_left(Now) & Now >= Before - 1
   <- !get_fuller(Before).
+
+// The level has fallen.  A gauge may correct itself once, if the battery reports that it charges; a second fall is too much.
++!fuller_than(Before) : battery(Now, charging) & not fallen
+  <- +fallen;
+     !get_fuller(Now);
+     -fallen.
 
 // How long the next percent may take: much longer than the slowest so far, because a nearly full battery charges slowly.
 +!learn_rate(Ms) : slowest_percent(Slowest) & Slowest >= Ms.
