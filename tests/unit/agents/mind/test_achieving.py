@@ -81,6 +81,23 @@ a failure plan further down handles it => g not_achieved
     !g. +!g <- !h[achieves(ok)]. +!h. -!g[error(E)] <- .print("g ", E).
 a goal without applicable plan fails as without a condition => no_applicable
     !g. +!g <- !h[achieves(ok)]. +!h : false. -!h[error(E)] <- .print(E).
+a goal that its goal condition ends is tested => not_achieved | after
+    !g. !t. +!g <- !h[achieves(ok, 100)]; .print(after).
+    +!h <: at(home) <- { .wait(900) } |&| { .wait(800); .print(never) }.
+    -!h[error(E)] <- .print(E).
+    +!t <- .wait(50); +at(home).
+a goal that its goal condition ends has time => h | after
+    !g. !t. +!g <- !h[achieves(ok, 100)]; .print(after).
+    +!h <: at(home) <- .print(h); !i; .print(never). +!i <- .wait(900).
+    +!t <- .wait(50); +at(home); .wait(50); +ok.
+a goal that is done is tested => 1 | 2 | after
+    n(1). !g. +!g <- !h[achieves(n(2)), retry(4, 10)]; .print(after).
+    +!h <: false <- ?n(N); .print(N); .done; .print(never).
+    ^!h[state(retried)] <- -+n(2).
+a failure plan that is done is not tested => after
+    !g. +!g <- !h[achieves(ok)]; .print(after). +!h <- .fail. -!h <- .done; .print(never).
+a goal that another intention declares achieved is not tested => after
+    !g. !t. +!g <- !h[achieves(ok)]; .print(after). +!h <- .wait(900). +!t <- .wait(50); .succeed_goal(h).
 a goal that ends by a tail call is tested => 3 | 2 | 1 | 0 | not_achieved
     !g. +!g <- !h(3)[achieves(ok)]. +!h(0) <- .print(0). +!h(N) <- .print(N); !h(N - 1). -!h(_)[error(E)] <- .print(E).
 """
@@ -299,6 +316,8 @@ def test_observers_see_that_a_goal_settles_and_fails():
 
 
 STORED = """
+a goal that is done and settles => h | after
+    !g. !t. +!g <- !h[achieves(ok, 300)]; .print(after). +!h <: false <- .print(h); .done. +!t <- .wait(100); +ok.
 a goal that settles and is tried again => h | h | 3
     !g. !t. +!g <- !h(X)[achieves(ok(X), 900), retry(2, 100)]; .print(X). +!h(X) <- .print(h).
     +!t <- .wait(1500); +ok(3).

@@ -43,6 +43,7 @@ from jacaros.agents.terms.values import (
     structure,
 )
 
+_SETTLING = functor(ACHIEVES, 1)
 _AND = functor("&", 2, kind=LOGIC)
 _MOST_FOUND = 12
 """Maximum number of beliefs in ``found(..)``."""
@@ -54,7 +55,7 @@ def is_achieved(agent: Circumstance, intention: Intention) -> bool:
     If that does not hold, the intention waits for it, or the next step of the frame makes the plan fail.
     """
     frame = intention.frames[-1]
-    for holder in _untested(intention, frame):
+    for holder in untested(intention, len(intention.frames) - 1):
         condition, seconds = _condition(holder, frame)
         held, fault = is_true(agent, condition)
         if held and fault is None:
@@ -69,10 +70,11 @@ def is_achieved(agent: Circumstance, intention: Intention) -> bool:
     return True
 
 
-def _untested(intention: Intention, frame: Frame) -> Iterator[Frame]:
-    """Yield the supervisions of the plan on top, and of the goal that it pursues, whose conditions have not held yet."""
+def untested(intention: Intention, index: int) -> Iterator[Frame]:
+    """Yield the supervisions of the plan at *index*, and of its goal, whose conditions have not held yet."""
+    frame = intention.frames[index]
     if not is_supervision(frame):
-        for holder in holders_below(intention, len(intention.frames) - 1):
+        for holder in holders_below(intention, index):
             of_goal = holder[SUPERVISION].kind is not None
             if holder[CONDITION] is not None and not (of_goal and frame[GOAL][0].failing):
                 yield holder
@@ -104,12 +106,19 @@ def _settle(
     agent: Circumstance, intention: Intention, holder: Frame, condition: Term, seconds: float
 ) -> None:
     """Wait until the condition holds, or the time is over."""
-    waiting = Waiting(intention, structure("achieves", condition), began=now(agent))
-    waiting.attach(intention.frames[-1], None)
+    frame = intention.frames[-1]
+    waiting = Waiting(intention, (_SETTLING, condition), began=now(agent))
+    waiting.attach(frame, frame[STEP])
     waiting.pending.append(watch(agent, condition, _settled, waiting, holder))
     waiting.pending.append(set_alarm(agent, seconds, _unsettled, waiting))
-    if agent.features.meta:
+    if agent.features.meta and frame[STEP] is None:  # otherwise whoever has made the step reports it
         meta_events.top_goal_state(agent, intention, "waiting", waiting.reason)
+
+
+def is_settling(intention: Intention) -> bool:
+    """Return whether a plan has ended whose condition may come true yet."""
+    waiting = intention.waiting
+    return waiting is not None and waiting.reason.__class__ is tuple and waiting.reason[0] is _SETTLING
 
 
 def _settled(agent: Circumstance, fault: Exception | None, waiting: Waiting, holder: Frame) -> None:
@@ -140,7 +149,7 @@ def fail_unachieved(agent: Circumstance, frame: Frame) -> object:
     """The step behind the last one of a plan that has not achieved what it was to achieve: it fails."""
     intention = agent.current
     assert intention is not None
-    holder = next(_untested(intention, frame))
+    holder = next(untested(intention, len(intention.frames) - 1))
     condition = rename(resolve(_condition(holder, frame)[0]))
     message = f"{unbracketed(text(condition))} does not hold when the plan has ended"
     terms = (

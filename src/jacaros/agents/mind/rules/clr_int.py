@@ -1,7 +1,7 @@
 """Goals leave the stack: finished plans (rule ClrInt), those whose goal condition holds, and those cut from outside."""
 
 from jacaros.agents.mind.rules import failure, meta_events
-from jacaros.agents.mind.rules.achieving import is_achieved
+from jacaros.agents.mind.rules.achieving import fail_unachieved, is_achieved, is_settling, untested
 from jacaros.agents.mind.rules.forks import leave
 from jacaros.agents.mind.rules.supervision import end_above
 from jacaros.agents.mind.state.circumstance import Circumstance
@@ -16,6 +16,7 @@ from jacaros.agents.mind.state.intention import (
     Intention,
 )
 from jacaros.agents.mind.state.pending import GOAL_CONDITION, Waiting
+from jacaros.agents.mind.state.plan import SUSPENDED
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.unifier import undo
 from jacaros.runtime.errors import InternalError
@@ -63,7 +64,12 @@ def end_achieved_goals(agent: Circumstance) -> None:
         if all(frame[PLAN].goal_condition is None for frame in intention.frames):
             agent.conditioned.pop(number, None)
         for index, frame in enumerate(intention.frames):
-            if frame[PLAN].goal_condition is not None and _is_achieved(agent, frame):
+            if (
+                frame[PLAN].goal_condition is not None
+                and frame[STEP] not in (_end_early, fail_unachieved)
+                and not is_settling(intention)
+                and _is_achieved(agent, frame)
+            ):
                 queued = intention in agent.intentions
                 achieve(agent, intention, index)
                 if intention.frames:
@@ -132,11 +138,29 @@ def cut_out(agent: Circumstance, intention: Intention, index: int) -> None:
 
 
 def achieve(agent: Circumstance, intention: Intention, index: int) -> None:
-    """Cut a stack at a goal that ends as achieved; the goals that served it are dropped."""
+    """Cut a stack at a goal that ends as achieved; the goals that served it are dropped.
+
+    If it is tested, its plan stays until that has been done.
+    """
+    is_over = index in intention.handlers or next(untested(intention, index), None) is None
+    first = index if is_over else index + 1
     if agent.features.meta:
-        for place, frame in reversed(list(enumerate(intention.frames))[index:]):
+        for place, frame in reversed(list(enumerate(intention.frames))[first:]):
             state = "achieved" if place == index else "dropped"
             tell = meta_events.observe if frame[GOAL][0].failing else meta_events.frame_state
             tell(agent, intention, frame, state)
             tell(agent, intention, frame, "finished")
-    cut(agent, intention, index)
+    cut(agent, intention, first)
+    if not is_over:
+        leave(agent, intention, index)
+        intention.frames[index][STEP] = _end_early
+
+
+def _end_early(agent: Circumstance, frame: Frame) -> object:
+    """The step of a plan that has ended before its last step: its goal is achieved if the tests say so."""
+    intention = agent.current
+    assert intention is not None
+    if is_achieved(agent, intention):
+        frame[STEP] = None
+        achieve(agent, intention, len(intention.frames) - 1)
+    return None if intention.waiting is None else SUSPENDED

@@ -26,7 +26,7 @@ from jacaros.agents.mind.state.intention import (
     Intention,
     event_literal,
 )
-from jacaros.agents.mind.state.pending import supervisions_below
+from jacaros.agents.mind.state.pending import CONDITION, SUPERVISION, holders_below
 from jacaros.agents.mind.state.plan import hidden_plan
 from jacaros.agents.mind.state.triggers import Goal, Trigger, literal_of, own_annotations, trigger
 from jacaros.agents.terms.substitution import rename
@@ -305,7 +305,7 @@ def succeed_goal(agent: Circumstance, goal: Term) -> bool:
         index = frame_of(agent, intention, goal)
         running = intention is agent.current
         queued = intention in agent.intentions
-        _end_periods(intention, len(intention.frames) if index is None else index)
+        _end_for_good(intention, len(intention.frames) if index is None else index)
         if index is None:
             event = pending_event(agent, intention)
             if event is not None:
@@ -340,7 +340,7 @@ def fail_goal(agent: Circumstance, goal: Term, reason: FailureReason | None = No
         if intention.dropped:  # the branch of a fork above the goal, which has ended with another branch
             continue
         index = frame_of(agent, intention, goal)
-        _end_periods(intention, len(intention.frames) if index is None else index)
+        _end_for_good(intention, len(intention.frames) if index is None else index)
         if index is None:
             event = pending_event(agent, intention)
             if event is not None:
@@ -366,10 +366,10 @@ def _fail_event(agent: Circumstance, intention: Intention, event: Event, reason:
     agent.post_for(intention, failure.fail_goal(agent, intention, goal, annotations, reason))
 
 
-def _end_periods(intention: Intention, index: int) -> None:
-    """End the periods of the goal at *index* (or of one about to get a frame there) after the present one."""
-    for supervision in supervisions_below(intention, index):
-        supervision.period = None
+def _end_for_good(intention: Intention, index: int) -> None:
+    """Let the goal at *index* (or one about to get a frame there) end without a test, and without a further period."""
+    for holder in holders_below(intention, index):
+        holder[SUPERVISION].period = holder[CONDITION] = None
 
 
 def post_external(agent: Circumstance, kind: Trigger, literal: Term) -> None:
