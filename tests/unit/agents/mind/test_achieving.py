@@ -38,7 +38,7 @@ def test_the_failure_says_what_was_to_be_achieved_and_what_is_believed():
     )
     [first, told, values, after] = host.printed
     assert (first, values, after) == ("docking", "true [docked(false),battery(12,discharging)]", "after")
-    assert told.startswith("not_achieved: docked(true) & battery(")
+    assert told == "not_achieved: docked(true) & battery(_,charging) does not hold when the plan has ended"
     assert host.logged == []
 
 

@@ -5,6 +5,7 @@ at most Ms milliseconds, and then ends as achieved, or fails like a plan whose l
 failure of the goal is not tested: what it does is the program's answer.
 """
 
+import re
 from collections.abc import Iterator
 
 from jacaros.agents.language import nodes
@@ -45,6 +46,7 @@ from jacaros.agents.terms.values import (
 
 _SETTLING = functor(ACHIEVES, 1)
 _AND = functor("&", 2, kind=LOGIC)
+_UNNAMED = re.compile(r"\b_\d+\b")
 _MOST_FOUND = 12
 """Maximum number of beliefs in ``found(..)``."""
 
@@ -151,7 +153,8 @@ def fail_unachieved(agent: Circumstance, frame: Frame) -> object:
     assert intention is not None
     holder = next(untested(intention, len(intention.frames) - 1))
     condition = rename(resolve(_condition(holder, frame)[0]))
-    message = f"{unbracketed(text(condition))} does not hold when the plan has ended"
+    wanted = _UNNAMED.sub("_", unbracketed(text(condition)))
+    message = f"{wanted} does not hold when the plan has ended"
     terms = (
         (ERROR, atom("not_achieved")),
         (ERROR_MSG, String(message)),
