@@ -94,6 +94,14 @@ a goal that is done is tested => 1 | 2 | after
     n(1). !g. +!g <- !h[achieves(n(2)), retry(4, 10)]; .print(after).
     +!h <: false <- ?n(N); .print(N); .done; .print(never).
     ^!h[state(retried)] <- -+n(2).
+a goal condition ends a goal whose sub-goal settles => h | left
+    !g. !t. +!g <: at(home) <- !h[achieves(ok, 9000)]; .print(never). +!h <- .print(h).
+    +!t <- .wait(50); +at(home); .wait(50); if (not .intend(g)) { .print(left) }.
+a goal that a sub-plan for an event ends is tested => h | not_achieved | after
+    !g. !t. +!g <- !h[achieves(ok, 20)]; .print(after).
+    +!h <: false <- .print(h). { +e <- .done; .print(never). }
+    -!h[error(E)] <- .print(E).
+    +!t <- .wait(50); ++e.
 a failure plan that is done is not tested => after
     !g. +!g <- !h[achieves(ok)]; .print(after). +!h <- .fail. -!h <- .done; .print(never).
 a goal that another intention declares achieved is not tested => after

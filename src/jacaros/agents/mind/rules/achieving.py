@@ -117,10 +117,10 @@ def _settle(
         meta_events.top_goal_state(agent, intention, "waiting", waiting.reason)
 
 
-def is_settling(intention: Intention) -> bool:
-    """Return whether a plan has ended whose condition may come true yet."""
+def is_settling(intention: Intention, frame: Frame) -> bool:
+    """Return whether the plan of a frame has ended, and its condition may come true yet."""
     waiting = intention.waiting
-    return waiting is not None and waiting.reason.__class__ is tuple and waiting.reason[0] is _SETTLING
+    return waiting is not None and waiting.frame is frame and functor_of(waiting.reason) is _SETTLING
 
 
 def _settled(agent: Circumstance, fault: Exception | None, waiting: Waiting, holder: Frame) -> None:

@@ -67,7 +67,7 @@ def end_achieved_goals(agent: Circumstance) -> None:
             if (
                 frame[PLAN].goal_condition is not None
                 and frame[STEP] not in (_end_early, fail_unachieved)
-                and not is_settling(intention)
+                and not is_settling(intention, frame)
                 and _is_achieved(agent, frame)
             ):
                 queued = intention in agent.intentions
