@@ -63,17 +63,19 @@ patience(300000) :- not slowest_percent(_).
 -!attempt(_, _)[error(Error), error_msg(Text), env_failure_reason(canceled)]
   <- .fail(error(Error), error_msg(Text), env_failure_reason(canceled)).
 
-// Without current, do not try until the battery is empty.
--!attempt(wait_until_charged, Number)[error_msg(Text), env_failure_reason(no_current)] : Number >= 3
-  <- .fail(error(no_current), error_msg(Text), env_failure_reason(no_current)).
+// The dock gives no current: dock anew, but do not try until the battery is empty.
+-!attempt(wait_until_charged, Number) : Number < 3
+  <- !back_out;
+     !into_dock;
+     !attempt(wait_until_charged, Number + 1).
 
 // The step failed: recover from the reason, and retry.
--!attempt(Step, Number)[env_failure_reason(Reason)] : attempts_allowed(Most) & Number < Most
+-!attempt(Step, Number)[env_failure_reason(Reason)] : Step \== wait_until_charged & attempts_allowed(Most) & Number < Most
   <- !recover(Reason);
      !attempt(Step, Number + 1).
 
 // A program's own step may fail without such a reason: recover from the kind of error instead.
--!attempt(Step, Number)[error(Error)] : attempts_allowed(Most) & Number < Most
+-!attempt(Step, Number)[error(Error)] : Step \== wait_until_charged & attempts_allowed(Most) & Number < Most
   <- !recover(Error);
      !attempt(Step, Number + 1).
 
@@ -91,10 +93,8 @@ patience(300000) :- not slowest_percent(_).
 +!recover(server_unavailable) <- .wait(3000).
 +!recover(server_lost) <- .wait(3000).
 
-// The dock gives no current: dock anew.
-+!recover(no_current)
-  <- !back_out;
-     !into_dock.
+// The dock gives no current: leave it, and dock again.
++!recover(not_charging) <- !back_out.
 
 +!back_out : not docked(false)
   <- !drive_out_of_dock.
