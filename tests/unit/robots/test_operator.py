@@ -156,7 +156,10 @@ async def test_a_service_answers_and_then_refuses(lab: Lab, artifact: ArtifactId
     assert not [name for name in (await lab.backend.contents()).services if "question" in name]
 
 
-@pytest.mark.parametrize("data", ["", "[]", "{}", '{"question": null, "answer": "hall"}', "[" * 100_000])
+@pytest.mark.parametrize(
+    "data",
+    ["", "[]", "{}", '{"question": null, "answer": "hall"}', '{"question": 1e999, "answer": ""}', "[" * 100_000],
+)
 async def test_an_unreadable_message_is_logged(lab: Lab, artifact: ArtifactId, data: str) -> None:
     run, _ = await asked(lab, artifact)
     Questions(await lab.node("panel")).publish(data)

@@ -222,7 +222,7 @@ class Operator(RosArtifact):
         try:
             given = json.loads(sample.message.data)
             number, answer = int(given["question"]), str(given["answer"])
-        except (ValueError, TypeError, KeyError, RecursionError):
+        except (ValueError, OverflowError, TypeError, KeyError, RecursionError):
             self.log(
                 'answer refused: expected JSON such as {"question": 1, "answer": "yes"} on operator/answer'
             )
