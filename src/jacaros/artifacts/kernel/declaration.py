@@ -322,8 +322,9 @@ def _declare(
             f"{name_of(source)}: expected a property in expect, found a signal; use meanwhile"
         )
     if expects := bool(effects or conditions):
-        names = [each.name for each in signature.parameters]
-        function = expecting(function, names, effects, conditions)
+        written = inspect.signature(source).parameters
+        usual = {each.name: written[each.name].default for each in signature.parameters}
+        function = expecting(function, usual, effects, conditions)
     return DeclaredOperation(
         name,
         mark.kind,

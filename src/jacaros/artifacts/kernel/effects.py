@@ -5,7 +5,7 @@ The expectations are checked around the operation's own function, so operations 
 
 import asyncio
 import inspect
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping
 from functools import partial, wraps
 from typing import Any
 
@@ -19,7 +19,7 @@ from jacaros.runtime.clock import Timer
 
 def expecting(
     function: Callable[..., Any],
-    names: Sequence[str],
+    usual: Mapping[str, object],
     expect: tuple[Expect, ...],
     meanwhile: tuple[Expect, ...],
 ) -> Callable[..., Any]:
@@ -27,14 +27,14 @@ def expecting(
 
     Args:
         function: takes the artifact and the arguments.
-        names: names of its parameters, for patterns that refer to them.
+        usual: its parameters with their default values, for patterns that refer to them.
         expect: effects, after its end.
         meanwhile: conditions while it runs.
     """
 
     @wraps(function)
     async def run(artifact: Any, *arguments: object) -> object:
-        given = dict(zip(names, arguments, strict=False))
+        given = {**usual, **dict(zip(usual, arguments, strict=False))}
         watch = _Watch(artifact, [each.bound(given) for each in expect])
         try:
             watch.begin([each.bound(given) for each in meanwhile])

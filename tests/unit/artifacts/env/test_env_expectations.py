@@ -60,7 +60,7 @@ class Motion(Base):
         """End immediately."""
 
     @operation(expect=Expect("pose", [{"near": "$x", "by": 0.5}], within=1))
-    async def drive(self, x: float):
+    async def drive(self, x: float = 7.0):
         await self.sleep(1)
 
     @operation(
@@ -120,6 +120,12 @@ async def test_a_property_that_was_there_is_missed(stage):
     await call.wait()
     assert text(call.reason) == "expected(pose(near(2,0.5)),found(nothing))"
     assert "expected pose(near(2,0.5)) within 1 s, found nothing" in call.outcome.message
+
+
+async def test_the_default_of_a_parameter_is_expected(stage):
+    motion, base = await two(stage)
+    stage.call(base, "report", "pose", 7)
+    assert (await stage.ended(motion, "drive")).ok
 
 
 async def test_a_plain_method_can_expect_and_the_own_property_counts(stage):
