@@ -152,7 +152,7 @@ def explain_outcome(past: Past, asked: Question, found: Sequence[Deed], ask: str
         facts.append(ending)
     elif last.state == "dropped" and not _ends_with_run(past, last):
         facts += (event_fact(past, *each) for each in events_before(past, at, 0, last.agent))
-    elif not holds:
+    elif lasts or _ends_with_run(past, last):
         facts += waits_for(past, last.agent, last.text)
     if done:
         when = seconds(done[-1].ended or done[-1].began)

@@ -129,8 +129,8 @@ def source_line(past: Past, file: str, line: int) -> str:
     return code.removeprefix("<-").strip().rstrip(";.")
 
 
-def with_values(past: Past, agent: str, condition: str, t: float) -> str:
-    """Return a condition as text, with the beliefs that it and the rules in it are about, as they were at *t*."""
+def with_values(past: Past, agent: str, condition: str, t: float, told: str = "") -> str:
+    """Return a condition, or the text *told* for it, with the beliefs that it and its rules are about, as of *t*."""
     names, rules = set(_NAMES.findall(condition)), past.rules.get(agent, [])
     for _ in range(_DEPTH):
         bodies = [rule.partition(":-")[2] for rule in rules if name_of(rule) in names]
@@ -142,7 +142,7 @@ def with_values(past: Past, agent: str, condition: str, t: float) -> str:
             if change.op == "+":
                 held[change.belief] = None
     values = ", ".join(shown(belief).partition("[")[0] for belief in [*held][-MOST_VALUES:])
-    return f"`{condition}`{f' with {values}' if values else ''}"
+    return f"{told or f'`{condition}`'}{f' with {values}' if values else ''}"
 
 
 def applied(past: Past, handled: records.DeliberationRecord, t: float) -> Fact | None:
@@ -150,5 +150,5 @@ def applied(past: Past, handled: records.DeliberationRecord, t: float) -> Fact |
     plan = past.plan(handled.agent, handled.chosen)
     if plan is None or not plan.context:
         return None
-    text = f"{plan_name(plan)} applied: {with_values(past, handled.agent, plan.context, t)}"
+    text = with_values(past, handled.agent, plan.context, t, f"`{plan_text(plan)}` applied")
     return Fact("plan", text, t, handled.agent, *place_of(plan))

@@ -82,7 +82,7 @@ def earlier(times_of: Iterable[float]) -> Iterator[Fact]:
 
 def times(count: int) -> str:
     """Return a number of times as text."""
-    return "once" if count == 1 else f"{count} times"
+    return {1: "once", 2: "twice"}.get(count, f"{count} times")
 
 
 def seconds(t: float) -> str:

@@ -1,6 +1,6 @@
 import { element } from "./elements.js";
 
-const EXAMPLES = ["why did the robot stop", "+!go(dock)", "waiting", "battery(X)"];
+const EXAMPLES = ["why is it standing still", "why did it fail", "did it achieve go(dock)", "+!go(dock)", "battery(X)"];
 
 /** A question to the running system, and its answer.  Hidden where the system takes none, as in a recording. */
 export class WhyQuestion {
