@@ -423,6 +423,8 @@ async def test_the_run_continues_while_a_question_about_it_is_answered(page, mon
 async def test_a_question_is_answered(page) -> None:
     await page.done("goal", agent="bob", op="post", text="go(dock)")
     await page.mas.agent("bob").until("at(dock)", 5)
-    assert "!go(dock) achieved" in str(await page.done("why", question="!go(dock)"))
+    assert "!go(dock) was achieved" in str(await page.done("why", question="!go(dock)"))
+    answer = str(await page.done("why", question="did it achieve go(dock)?"))
+    assert answer.startswith("yes: `!go(dock)` of bob was achieved")
     assert "missing required field `question`" in await page.refused("why")
     assert await page.refused("why", question="gibberish of no kind at all")

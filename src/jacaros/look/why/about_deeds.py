@@ -1,6 +1,6 @@
 """Answers about what happened: why, when, how often, whether it was achieved, and what failed."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from itertools import islice
 from math import isnan, nan
 
@@ -99,21 +99,13 @@ def _waits(past: Past, deed: Deed) -> dict[str, str]:
 
 def explain_when(past: Past, asked: Question, found: Sequence[Deed]) -> Explanation:
     """Explain when some deeds happened, and how often."""
-    last = found[-1]
-    facts = tuple(
-        Fact(each.kind, f"`{shown(each.text)}` {_span(each)}", each.began, each.agent)
-        for each in islice(reversed(found), MOST)
-    )
-    more = f", last at {seconds(last.began)}" if len(found) > 1 else f", at {seconds(last.began)}"
-    return Explanation(
-        asked.written, f"`{shown(last.text)}` happened {times(len(found))}{more}", last.began, facts
-    )
-
-
-def _span(deed: Deed) -> str:
-    return f"at {seconds(deed.began)}" + (
-        f"; it {deed.outcome}" if deed.kind in ("goal", "operation") else ""
-    )
+    facts = []
+    for each in islice(reversed(found), MOST):
+        began = f"began at {seconds(each.began)}; it " if each.kind in ("goal", "operation") else ""
+        facts.append(Fact(each.kind, f"`{shown(each.text)}` {began}{each.outcome}", each.began, each.agent))
+    last, when = found[-1], "last at" if len(found) > 1 else "at"
+    answer = f"`{shown(last.text)}` happened {times(len(found))}, {when} {seconds(last.began)}"
+    return Explanation(asked.written, answer, last.began, tuple(facts))
 
 
 def explain_outcome(past: Past, asked: Question, found: Sequence[Deed], ask: str = "did") -> Explanation:
@@ -128,8 +120,11 @@ def explain_outcome(past: Past, asked: Question, found: Sequence[Deed], ask: str
         facts = [Fact("note", line.strip()) for line in last.why.split("\n")[1:]]
     lasts = last.state in ("holds", *OPEN)
     holds = lasts if ask in ("is", "are") else last.state in SUCCEEDED or last.state == "holds"
-    misplaced = _misplaced(past, last) if holds else None
-    if ask == "why":
+    robots = {
+        past.robots_of.get(each.artifact, "") for each in past.operations.values() if each.agent == last.agent
+    }
+    misplaced = _misplaced(past, last, robots) if holds else None
+    if ask == "why" or last.state == "replaced":
         said = ""
     elif ask == "why not":
         said = "" if not holds else "it believes that it did: " if misplaced else "it did: "
@@ -139,30 +134,32 @@ def explain_outcome(past: Past, asked: Question, found: Sequence[Deed], ask: str
         said = "not yet: " if lasts else "no: "
     who = f" of {last.agent}" if last.agent else ""
     answer = f"{said}`{shown(last.text)}`{who} {_end(past, last)}"
-    at = last.began if last.ended is None else last.ended
-    tested = [wait for _, wait in past.waits if _TEST in (wait.waits or "") and _is_of(wait, last)]
-    for wait in tested[-1:]:
-        found_then = with_values(past, last.agent, (wait.waits or "").removeprefix(CONDITION), at)
-        facts.append(Fact("belief", found_then, None, last.agent))
+    for _, wait in reversed(past.waits):
+        condition = (wait.waits or "").removeprefix(CONDITION)
+        if (
+            _TEST in condition
+            and wait.agent == last.agent
+            and wait.stack
+            and wait.stack[-1].goal == last.text
+        ):
+            facts.append(Fact("belief", with_values(past, last.agent, condition, last.at), None, last.agent))
+            break
     facts += () if misplaced is None else (misplaced,)
-    if last.ended is not None:
-        facts += world_facts(past, last.ended, "")
+    for robot in robots if last.ended is not None else ():
+        facts += world_facts(past, last.at, robot) if robot else ()
     ending = ending_step(past)
     if _ends_with_run(past, last) and ending is not None:
         facts.append(ending)
     elif last.state == "dropped" and not _ends_with_run(past, last):
-        facts += (event_fact(past, *each) for each in events_before(past, at, 0, last.agent))
+        facts += (event_fact(past, *each) for each in events_before(past, last.at, 0, last.agent))
     elif lasts or _ends_with_run(past, last):
         facts += waits_for(past, last.agent, last.text)
     if done:
-        when = seconds(done[-1].ended or done[-1].began)
-        facts.append(Fact("note", f"{done[-1].state} {times(len(done))} before, last at {when}"))
+        facts.append(
+            Fact("note", f"{done[-1].state} {times(len(done))} before, last at {seconds(done[-1].at)}")
+        )
     because = () if holds else chain(past, last.link)
-    return Explanation(asked.written, answer, at, tuple(facts[:MOST]), because)
-
-
-def _is_of(wait: records.IntentionRecord, deed: Deed) -> bool:
-    return wait.agent == deed.agent and bool(wait.stack) and (wait.stack or ())[-1].goal == deed.text
+    return Explanation(asked.written, answer, last.at, tuple(facts[:MOST]), because)
 
 
 def _ends_with_run(past: Past, deed: Deed) -> bool:
@@ -171,16 +168,15 @@ def _ends_with_run(past: Past, deed: Deed) -> bool:
     return ended and (deed.state == "dropped" or deed.why == "cancelled")
 
 
-def _misplaced(past: Past, deed: Deed) -> Fact | None:
+def _misplaced(past: Past, deed: Deed, robots: Collection[str]) -> Fact | None:
     """Return where a robot was not, although it believed so when a deed ended."""
-    at = deed.began if deed.ended is None else deed.ended
-    t, robot, x, y = next((each for each in reversed(past.misplaced) if each[0] <= at), (0.0, "", nan, nan))
+    own = (each for each in reversed(past.misplaced) if each[0] <= deed.at and each[1] in robots)
+    t, robot, x, y = next(own, (0.0, "", nan, nan))
     if deed.kind not in ("goal", "operation") or isnan(x):
         return None
-    text = (
-        f"{robot} believed to be at ({x:.2f}, {y:.2f}), but was more than 5 cm or 5 degrees away from there"
+    return Fact(
+        "note", f"{robot} believed to be at ({x:.2f}, {y:.2f}), but was more than 5 cm or 5 degrees away", t
     )
-    return Fact("note", text, t)
 
 
 def _end(past: Past, deed: Deed) -> str:
@@ -203,32 +199,17 @@ def explain_failure(past: Past, asked: Question, found: Sequence[Deed] = ()) -> 
     if not failed:
         ended = "" if past.exit_code is None else f"; the run ended with exit code {past.exit_code}"
         return Explanation(asked.written, f"nothing failed until {seconds(past.end)}{ended}")
-    last = max(failed, key=_end_of)
-    together = [each for each in failed if each.agent == last.agent and _end_of(each) == _end_of(last)]
+    last = max(failed, key=lambda each: each.at)
+    together = [each for each in failed if each.agent == last.agent and each.at == last.at]
     first = min(together, key=lambda each: (each.kind != "operation", -each.began))
     goals = [each for each in together if each is not first]
-    facts = [Fact("note", line.strip()) for line in _first_lines(first, goals)]
+    # After the first line come those with the step and the reason terms; an operation has none.
+    lines = next((lines for each in (first, *goals) if (lines := each.why.split("\n")[1:])), [])
+    facts = [Fact("note", line.strip()) for line in lines]
     facts += (
-        Fact("goal", f"{shown(each.text)} {_state(each)} at {seconds(_end_of(each))}", None, each.agent)
+        Fact("goal", f"{shown(each.text)} {each.state} at {seconds(each.at)}", None, each.agent)
         for each in goals
     )
-    recovered = ", and the agent recovered" if any(each.state == "recovered" for each in together) else ""
+    recovered = ", and the agent recovered" if any(each.state == "recovered" for each in goals) else ""
     answer = f"`{shown(first.text)}` {first.outcome}{recovered}"
-    return Explanation(asked.written, answer, _end_of(first), tuple(facts[:MOST]), chain(past, first.link))
-
-
-def _first_lines(first: Deed, goals: Sequence[Deed]) -> list[str]:
-    """Return the lines about a failure after the first one, with the place and reason terms."""
-    for each in (first, *goals):
-        lines = each.why.split("\n")
-        if len(lines) > 1:
-            return lines[1:]
-    return []
-
-
-def _state(deed: Deed) -> str:
-    return "failed and recovered" if deed.state == "recovered" else deed.state
-
-
-def _end_of(deed: Deed) -> float:
-    return deed.began if deed.ended is None else deed.ended
+    return Explanation(asked.written, answer, first.at, tuple(facts[:MOST]), chain(past, first.link))

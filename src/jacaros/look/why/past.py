@@ -59,6 +59,11 @@ class Deed(NamedTuple):
     end: records.OperationRecord | None = None
 
     @property
+    def at(self) -> float:
+        """When it ended, or if it lasts, when it began."""
+        return self.began if self.ended is None else self.ended
+
+    @property
     def outcome(self) -> str:
         """How and when it ended, as text."""
         if self.state in OPEN:
@@ -68,9 +73,11 @@ class Deed(NamedTuple):
         why = self.why.partition("\n")[0]
         if why == "cancelled":
             return f"was cancelled at {seconds(self.ended)}"
-        how = {"failed": "failed", "recovered": "failed, and a plan for the failure ended"}.get(
-            self.state, f"was {self.state}"
-        )
+        how = {
+            "failed": "failed",
+            "recovered": "failed and recovered",
+            "replaced": "was replaced by its last step",
+        }.get(self.state, f"was {self.state}")
         return f"{how} at {seconds(self.ended)}{f': {why}' if why else ''}"
 
 

@@ -24,6 +24,8 @@ _WORD = re.compile(r"[A-Za-z]+'[a-z]+|\w+")
 NOW = words_of("is are am")
 WHETHER = NOW | words_of("did does do has have had was were can could will would")
 WHEN = words_of("when where how")
+SUBJECT_FOLLOWS = WHETHER | {"", "agent", "robot", "for"}
+"""Words before the subject, such as `did`; at the beginning, an empty one."""
 _NEGATIONS = words_of("not never no")
 _FILLERS = WHETHER.union(
     WHEN,
@@ -71,7 +73,7 @@ class _Sentence(NamedTuple):
         meant = [
             word
             for last, word in zip(before, said, strict=False)
-            if not (word in names and (not last or last in WHETHER))
+            if not (word in names and last in SUBJECT_FOLLOWS)
         ]
         words = [part for word in meant if word not in _FILLERS and "'" not in word for part in stems(word)]
         return cls(said, said[0] if said else "", words, bool(negative))

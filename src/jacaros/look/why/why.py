@@ -24,7 +24,7 @@ from jacaros.look.why.deeds import deeds_asked_for
 from jacaros.look.why.explanation import Explanation, seconds
 from jacaros.look.why.past import Past
 from jacaros.look.why.patterns import Question, QuestionPattern, literal_at, name_of
-from jacaros.look.why.sentences import LITERAL, WHEN, WHETHER, Answer, explain_sentence
+from jacaros.look.why.sentences import LITERAL, SUBJECT_FOLLOWS, WHEN, WHETHER, Answer, explain_sentence
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.files.texts import help_line, suggestion
 
@@ -83,9 +83,14 @@ def explain(
     if agent and agent not in past.agents:
         known = ", ".join(past.agents) or "none"
         raise UsageError(f"error: unknown agent: `{agent}`\n  = help: agents until {past.end:.3f} s: {known}")
+    asked = read_question(question)
+    if asked.kind == "sentence":  # elsewhere in a sentence, the name of an agent may be that of a goal
+        words = [
+            word for last, word in zip(("", *words), words, strict=False) if last.lower() in SUBJECT_FOLLOWS
+        ]
     agent = agent or next((word for word in words if word in past.agents), "")
     robot = robot or next((word for word in words if word in past.robots), "")
-    asked = replace(read_question(question), agent=agent, robot=robot)
+    asked = replace(asked, agent=agent, robot=robot)
     answer = FORMS[asked.kind].answer if asked.kind in FORMS else explain_sentence
     explanation = answer(past, asked)
     if explanation is None:
@@ -112,12 +117,7 @@ def read_question(written: str) -> Question:
         event = found[0] + literal_at(asked, found.end())
         QuestionPattern(event)  # raises if it is not a literal
         return Question(written, "plan" if of_plan else "event", event)
-    if (
-        words
-        and words[0] in FORMS
-        and words[0] not in ("event", "belief")
-        and (words[1:] or words != ["plan"])
-    ):
+    if words and words != ["plan"] and words[0] in FORMS.keys() - {"event", "belief"}:
         return Question(written, words[0], " ".join(words[1:]))
     if asked.startswith("belief(") and asked.endswith(")"):
         asked = f"belief {asked.removeprefix('belief(')[:-1]}"

@@ -39,6 +39,7 @@ PLANS = [plan(1, "p__1", "+!keep", "", 1), plan(2, "p__2", "+!dock_and_charge", 
 CHARGING: list[Record] = [
     (0.0, "run", {"name": "guard", "ros": "memory"}),
     (0.0, "agent", {"agent": "guard", "state": "began"}),
+    (0.0, "artifact", {**WHEELS, "type": "Wheels", "state": "made", "robot": "robot1"}),
     program(0.0, PLANS, "battery_low :- battery(B) & B < 20."),
     belief(0.0, "place(dock,1,1,0)"),
     belief(0.0, "battery(90)"),
