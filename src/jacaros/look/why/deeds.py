@@ -15,9 +15,13 @@ _ORDER = ("world", "belief", "event", "goal", "operation")
 
 
 def deeds_asked_for(past: Past, asked: Question) -> list[Deed]:
-    """Return everything that happened, but for beliefs; of goals and events, those of the agent asked about."""
-    anyone = "world", "operation"
-    return [each for each in _deeds(past) if asked.agent in ("", each.agent) or each.kind in anyone]
+    """Return everything that happened, but for beliefs, of the agent and to the robot asked about."""
+
+    def is_meant(deed: Deed) -> bool:
+        whose = asked.robot if deed.kind == "world" else asked.agent
+        return "" in (whose, deed.agent) or deed.agent == whose
+
+    return [*filter(is_meant, _deeds(past))]
 
 
 def _deeds(past: Past) -> Iterator[Deed]:

@@ -132,7 +132,7 @@ def _of_beliefs(past: Past, asked: Question, sentence: _Sentence) -> Explanation
         heads = (rule.partition(":-")[0].strip() for rule in rules)
         name = next((each for each in heads if sentence.words and {*stems(each)} >= {*sentence.words}), None)
         if name is not None and asked.agent in ("", agent):
-            answer = f"{agent} concludes {with_values(past, agent, name, past.end)} by a rule"
+            answer = f"a rule of {agent} decides {with_values(past, agent, name, past.end)}"
             return Explanation(asked.written, answer, past.end)
     return None
 

@@ -84,7 +84,7 @@ CHARGING: list[Record] = [
         ("what went wrong", "`operationRecharge` failed", "not_achieved(charging)"),
         ("when did it drive to the dock?", "`driveTo(1,1)` happened once, at 8.000 s", "was done at 12.000 s"),
         ("how often did it rotate", "`rotate(90)` happened once", ""),
-        ("is the battery low?", "guard concludes `battery_low` with battery(12) by a rule", ""),
+        ("is the battery low?", "a rule of guard decides `battery_low` with battery(12)", ""),
         ("did it bump into something?", "yes: `bump` of robot1 happened at 12.000 s", ""),
         ("did it fall?", "no: `fell` was not recorded until 18.000 s", ""),
     ],
@@ -93,6 +93,13 @@ def test_a_sentence_is_about_what_its_words_name(question: str, answer: str, det
     found = explain(CHARGING, question)
     assert found.answer.startswith(answer)
     assert details in found.text()
+
+
+def test_of_several_robots_the_one_asked_about_is_meant() -> None:
+    other = operation(20.0, 90, "rotate(-5)", "began", 0, agent="scout")
+    records = [*CHARGING, (19.0, "agent", {"agent": "scout", "state": "began"}), other]
+    assert explain(records, "why did it turn?").answer.startswith("scout started `rotate(-5)`")
+    assert explain(records, "why did guard turn?").answer.startswith("guard started `rotate(90)`")
 
 
 def test_what_did_not_happen_is_explained_by_its_plan() -> None:
