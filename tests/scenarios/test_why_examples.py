@@ -37,7 +37,7 @@ def recordings(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[Recor
         ("01", "why is it standing still?", ["the run ended", "because robot ran `.stopMAS` for `!start`"]),
         ("01", "why did it fail?", ["nothing failed"]),
         ("04", "why did it go to the dock?", ["`!go_to(dock)`", 'of `+diagnostics("Low Battery")`', "/battery_state"]),
-        ("04", "why did it recharge?", ["`operationRecharge`", 'because of `+diagnostics("Low Battery")`', "with next("]),
+        ("04", "why did it recharge?", ["echarge` at ", 'because of `+diagnostics("Low Battery")`', "with next("]),
         ("04", "why did it turn?", ["angular.z=", "for `driveTo("]),
         ("04", "did it achieve patrol?", ["no: `!patrol([1,2,3,4])` of robot was dropped", "when the run ended"]),
         ("05", "why did it go to the dock?", ["`driveTo(1,1)`", "the place is `dock(1,1)`", '"Low Battery"']),

@@ -14,7 +14,17 @@ from jacaros.look.why.deeds import beliefs, deeds_asked_for, described
 from jacaros.look.why.explanation import Explanation, seconds
 from jacaros.look.why.past import Deed, Past
 from jacaros.look.why.patterns import Question, QuestionPattern, literal_at, name_of
-from jacaros.look.why.words import ENDING, FAILING, MOVING, RESTING, STOPPING, TURNING, stems, words_of
+from jacaros.look.why.words import (
+    ARRIVING,
+    ENDING,
+    FAILING,
+    MOVING,
+    RESTING,
+    STOPPING,
+    TURNING,
+    stems,
+    words_of,
+)
 from jacaros.robots.world.data.ground_truth import FIELDS
 
 Answer = Callable[[Past, Question], Explanation]
@@ -33,9 +43,9 @@ _FILLERS = WHETHER.union(
     words_of(
         "what which who why a an the this that there then here now it its i me my you we us they their robot"
     ),
-    words_of("agent run to into in on of off from for at by with about around back up and so because"),
+    words_of("agent run to into in on of off from for at by with about around up and so because"),
     words_of(
-        "something anything someone everything need needed want wanted try tried last first again often time"
+        "get got something anything someone everything need needed want wanted try tried last first again often time"
     ),
     words_of("times all happen happens happened led make made caused changed robots agents"),
 )
@@ -81,6 +91,9 @@ class _Sentence(NamedTuple):
     def is_only(self, verbs: frozenset[str]) -> bool:
         return bool(self.words) and verbs.issuperset(self.words)
 
+    def words_missing_in(self, text: str) -> list[str]:
+        return [word for word in self.words if word not in stems(text)]
+
 
 def explain_sentence(past: Past, asked: Question) -> Explanation | None:
     """Explain what the words of a question describe; None if nothing of this run fits them."""
@@ -93,7 +106,9 @@ def explain_sentence(past: Past, asked: Question) -> Explanation | None:
     return (
         (_of_beliefs(past, asked, sentence) if sentence.first in NOW else None)
         or _of_deeds(past, asked, sentence)
-        or next((answer(past, asked) for verbs, answer in _MOTIONS if sentence.is_only(verbs)), None)
+        or next(
+            (answer(past, asked) for verbs, answer in _MOTIONS if sentence.is_only(verbs - ARRIVING)), None
+        )
         or _of_beliefs(past, asked, sentence)
         or _of_nothing(past, asked, sentence)
     )
@@ -111,6 +126,8 @@ def _of_deeds(past: Past, asked: Question, sentence: _Sentence) -> Explanation |
         found = described(past, sentence.words, deeds)
         if not found and objects:
             found, ends = described(past, objects, deeds), True
+        if ARRIVING.issuperset(objects):  # without a destination, no drive is meant
+            found = [each for each in found if not sentence.words_missing_in(each.text)]
     if not found:
         return None
     if sentence.first in WHEN:
@@ -150,6 +167,6 @@ def _of_nothing(past: Past, asked: Question, sentence: _Sentence) -> Explanation
         done = CHOSEN in explanation.answer
         return explanation if done else replace(explanation, answer=f"{denied}{explanation.answer}")
     known = described(past, sentence.words, (Deed("world", each, 0.0) for each in FIELDS))
-    if sentence.first not in WHETHER or not known:
+    if sentence.first not in WHETHER or not known or sentence.is_only(MOVING):
         return None
     return Explanation(asked.written, f"no: `{known[-1].text}` was not recorded until {seconds(past.end)}")

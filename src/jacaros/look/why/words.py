@@ -46,6 +46,7 @@ def stems_of(text: str) -> frozenset[str]:
 
 
 MOVING = stems_of("go drive move navigate travel reach arrive come return visit")
+ARRIVING = stems_of("reach arrive come return visit")
 TURNING = stems_of("turn rotate spin")
 STOPPING = stems_of("stop halt")
 RESTING = stems_of("stand still stay idle wait stuck hang nothing silent doing blocked")

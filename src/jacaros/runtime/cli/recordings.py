@@ -67,9 +67,7 @@ def view(run: Path, output: Path | None, view_port: int, view_address: str, view
 @click.command(
     "why",
     context_settings=_QUESTIONS,
-    epilog=examples(
-        "jacaros why run.jsonl 'why did it recharge?'", "jacaros why run.jsonl '+alarm(_)' --at 12.5"
-    ),
+    epilog=examples("jacaros why run.jsonl did it dock", "jacaros why run.jsonl '+alarm(_)' --at 12.5"),
 )
 @click.argument("run", type=PATH)
 @click.argument("question", nargs=-1, required=True)

@@ -119,7 +119,16 @@ def test_an_agent_and_its_goal_may_have_one_name() -> None:
 
 
 @pytest.mark.parametrize(
-    "question", ["why did it paint the fence?", "how far did it drive", "did it go to the kitchen?", ""]
+    "question",
+    [
+        "why did it paint the fence?",
+        "how far did it drive",
+        "did it go to the kitchen?",
+        "did it come back?",
+        "did it arrive?",
+        "did it reach its goal?",
+        "",
+    ],
 )
 def test_an_unknown_sentence_lists_what_this_run_can_be_asked_about(question: str) -> None:
     with pytest.raises(UsageError) as refused:
