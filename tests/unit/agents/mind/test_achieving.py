@@ -298,6 +298,12 @@ def test_a_condition_that_cannot_be_evaluated_does_not_hold():
     assert told.startswith("cannot evaluate the condition ok: ")
 
 
+def test_a_condition_without_value_does_not_hold():
+    host = ran("!g. +!g <- !h(X)[achieves(ok(6 div X), 20)]. +!h(0). -!h(_)[error(E)] <- .print(E).")
+    assert host.printed == ["not_achieved"]
+    assert "ArithmeticFault: integer division by zero" in host.logged[0][1]
+
+
 def test_a_lost_goal_names_the_plan_that_ended():
     host = ran("docked(false).\n!g.\n+!g <- !h[achieves(docked(true))].\n+!h <- .print(h).")
     [(level, told)] = host.logged

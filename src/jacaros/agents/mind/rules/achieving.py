@@ -27,8 +27,9 @@ from jacaros.agents.mind.state.pending import (
 )
 from jacaros.agents.mind.state.plan import ACHIEVES, SUSPENDED, Rule
 from jacaros.agents.mind.state.triggers import own_annotations, trigger
+from jacaros.agents.terms.operators import ArithmeticFault
 from jacaros.agents.terms.substitution import rename, resolve
-from jacaros.agents.terms.text import text
+from jacaros.agents.terms.text import display
 from jacaros.agents.terms.values import (
     LOGIC,
     PLAIN,
@@ -140,8 +141,16 @@ def _unsettled(agent: Circumstance, waiting: Waiting) -> None:
 def log_fault(agent: Circumstance, fault: Exception | None, condition: Term) -> None:
     """Log that a condition cannot be evaluated."""
     if fault is not None:
-        told = f"cannot evaluate the condition {text(condition)}: {failure.told(fault)}"
+        told = f"cannot evaluate the condition {display(_shown(condition))}: {failure.told(fault)}"
         agent.architecture.log("error", told)
+
+
+def _shown(condition: Term) -> Term:
+    """Return a condition with its values, for plans and logs."""
+    try:
+        return rename(resolve(condition))
+    except (ArithmeticFault, RecursionError):
+        return String("without value")
 
 
 # --- failure -----------------------------------------------------------------------------------------------
@@ -152,13 +161,14 @@ def fail_unachieved(agent: Circumstance, frame: Frame) -> object:
     intention = agent.current
     assert intention is not None
     holder = next(untested(intention, len(intention.frames) - 1))
-    condition = rename(resolve(_condition(holder, frame)[0]))
-    wanted = _UNNAMED.sub("_", unbracketed(text(condition)))
+    condition = _condition(holder, frame)[0]
+    shown = _shown(condition)
+    wanted = _UNNAMED.sub("_", unbracketed(display(shown)))
     message = f"{wanted} does not hold when the plan has ended"
     terms = (
         (ERROR, atom("not_achieved")),
         (ERROR_MSG, String(message)),
-        structure("not_achieved", condition),
+        structure("not_achieved", shown),
         structure("found", make_list(_found(agent, condition))),
     )
     reason = FailureReason(terms, Place(frame))
