@@ -33,8 +33,8 @@ _MOST_POSES = 30_000
 """Poses of the lattice; its metres are doubled until a large map has at most these."""
 _ONE_PLACE = 0.1
 """Variance in m² and rad² up to which possible poses count as one."""
-_SURE_ENOUGH = 0.3
-"""Variance of the estimate in m² at which a search ends with that one."""
+_SEVERAL, _SURE_ENOUGH = 0.5, 0.3
+"""Variances of the estimate in m²: the least while several places are possible, and that at which a search ends."""
 _ANY_HEADING = PI * PI / 3.0
 
 
@@ -258,6 +258,8 @@ class SimulatedLocalisation:
         back = odometry.inverse()
         self._possible = [(worse, place.then(back)) for worse, place in found]
         xy, heading = _variances([place for _, place in found]) if found else self._match.spread()
+        if max(xy, heading) > _ONE_PLACE:
+            xy = max(xy, _SEVERAL)
         return max(FOUND[0], xy), max(FOUND[1], heading)
 
     def _corrects(self, place: Placement, radius: float, turn: float) -> bool:
