@@ -23,7 +23,7 @@ UPDATE_ANGLE = 0.2
 """Radians of odometry after which they do (``update_min_a``)."""
 _SAME = 1e-6
 _BEAMS = 24
-_ON_WALL, _ON_DOCK = 0.2, 0.3
+_ON_WALL, _ON_DOCK = 0.15, 0.3
 _MATCH = 0.9
 """Share of the echoes that must lie on walls of the map for a scan to match."""
 _WORSE = 0.25
