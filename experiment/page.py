@@ -55,7 +55,6 @@ def further_tables(further: Sequence[Outcome]) -> dict[str, Callable[[], Table]]
     """The tables of the runs with the further kinds of disturbances."""
     return {
         "further": lambda: success.further_table(further),
-        "further_ends": lambda: comparison.ends_table(further),
         "further_outcomes": lambda: success.outcome_table(further),
         "further_halves": lambda: success.halves_table(further),
     }
