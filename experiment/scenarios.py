@@ -53,8 +53,8 @@ SCENARIOS = dict(
         _scenario("out_and_back", "01_out_and_back/turtlebot4.jcm", "empty"),
         _scenario("square", "02_square/turtlebot4.jcm", "empty"),
         _scenario("fake_battery", "03_fake_battery/robot_battery.jcm", WEAK_BATTERY, {"source": "robot"}),
-        _scenario("patrol", "04_patrol/patrol.jcm", EXAMPLES / "04_patrol" / "patrol.yaml"),
-        _scenario("house_cleaning", "05_house_cleaning/house_cleaning.jcm", "house"),
+        _scenario("patrol", "04_patrol/turtlebot4.jcm", EXAMPLES / "04_patrol" / "patrol.yaml"),
+        _scenario("house_cleaning", "05_house_cleaning/turtlebot4.jcm", "house"),
     ]
 )
 """The scenarios by the names of their baselines."""

@@ -10,7 +10,6 @@ place(2, 2, 2, 90).
 place(3, 0, 2, 180).
 place(4, 0, 0, 270).  // where the robot starts
 place(dock, 1, 1, 0).
-attempts(1).  // no retries when the path is blocked
 shift(10).    // number of recharges in a shift
 
 next(1).    // the corner that the robot is heading for
@@ -38,9 +37,9 @@ lowest(100).  // lowest battery level on arrival in the dock, in percent
      -+next(Corner mod 4 + 1);
      !end_of_shift.
 
-// The robot cannot reach a corner.
--!reach(_, _)[error_msg(Text)]
-  <- !give_up(Text).
+// A corner that cannot be reached is left out, and its turn comes again.
++unreachable(Corner, Reason)
+  <- .print("I need help, or come back later: corner ", Corner, " is out of reach, ", Reason).
 
 +!end_of_shift : recharges(N) & shift(N)
   <- !report;
@@ -50,13 +49,22 @@ lowest(100).  // lowest battery level on arrival in the dock, in percent
 
 /* The battery */
 
-// An agent can pursue several goals at the same time. This plan is more urgent than the patrol, and its goal needs the
-// same wheels: the robot stops immediately, and when the goal has ended, driveTo continues to the same corner.
+// An agent can pursue several goals at the same time. This plan is more urgent than the patrol, and the library's
+// charge_first needs the same wheels: the robot stops immediately, and when that goal has ended, driveTo continues to the
+// same corner.
 @charge[urgency(10)]
 +diagnostics("Low Battery") : next(Corner)
   <- .print("battery low on the way to corner ", Corner);
-     !dock_and_charge[needs(wheels)];
+     !recharge;
      .print("battery full, on to corner ", Corner).
+
++!recharge
+  <- !charge_first[achieves(battery(Full) & Full > 95)].
+
+// The robot could not charge, and nobody has helped.
+-!recharge[error_msg(Text)]
+  <- .print("I need help: ", Text);
+     .stopMAS(0, 1).  // the exit status reports the failure
 
 // The steps of the library's dock_and_charge: into the dock, charge, and out of the dock (nothing to do here).
 +!drive_into_dock
@@ -70,14 +78,6 @@ lowest(100).  // lowest battery level on arrival in the dock, in percent
      -+recharges(N + 1).
 
 +!drive_out_of_dock.
-
-// Failure: the robot missed the dock, or its path was blocked.
--!dock_and_charge[error_msg(Text)]
-  <- !give_up(Text).
-
-+!give_up(Text)
-  <- .print("I need help: ", Text);
-     .stopMAS(0, 1).  // the exit status reports the failure
 
 +!remember(Percent) : lowest(Least) & Percent < Least
   <- -+lowest(Percent).

@@ -5,12 +5,17 @@
 
 /* What the agent knows */
 
-room(0, hallway, 0, 0).  // number, name, x and y in metres
-room(1, living_room, 2, 0).
-room(2, kitchen, 2, 2).
-room(3, bathroom, 0, 2).
-dock(1, 1).
-rounds(4).  // how often to clean the house
+room(0, hallway).
+room(1, living_room).
+room(2, kitchen).
+room(3, bathroom).
+place(0, 0, 0, 0).  // number of the room, x and y in metres, yaw in degrees
+place(1, 2, 0, 0).
+place(2, 2, 2, 0).
+place(3, 0, 2, 0).
+place(dock, 1, 1, 0).
+attempts(20).  // so long a door may stay closed
+rounds(4).     // how often to clean the house
 
 done(0).  // rounds completed
 recharges(0).
@@ -23,7 +28,16 @@ recharges(0).
      !use_artifact("household", "ArtCleaning");
      !!clean_house.
 
-/* From room to room */
+/* From room to room: go_to is a plan of the library that is included at the end */
+
+// Go to a place: drive straight there, in any final heading.
++!drive_there(X, Y, _)
+  <- driveTo(X, Y).
+
+// Something is in the way, such as a closed door: wait, and try again.
++!recover(blocked(_)) : atRoom(Number) & room(Number, Room)
+  <- .print("I need help, or time: something is in my way to the ", Room);
+     .wait(3000).
 
 // The property atRoom(Number) of the household is the current room, at first the hallway.
 +!clean_house : done(N) & rounds(N) & recharges(R)
@@ -35,8 +49,8 @@ recharges(0).
 +!clean_house
   <- updateWhereAmI;  // make the next room the current one
      ?atRoom(Number);
-     ?room(Number, Room, X, Y);
-     driveTo(X, Y);
+     ?room(Number, Room);
+     !go_to(Number);
      !clean_room(Number, Room);
      !!clean_house.
 
@@ -69,12 +83,20 @@ recharges(0).
      .print("battery full");
      !return.
 
-+!recharge : dock(X, Y) & recharges(N)
-  <- driveTo(X, Y);
-     operationRecharge;
++!recharge
+  <- !charge_first[achieves(battery(Full) & Full > 95)].
+
+// The steps of the library's charge_first: into the dock, charge, and out of the dock (nothing to do here).
++!drive_into_dock
+  <- !go_to(dock).
+
++!wait_until_charged : recharges(N)
+  <- operationRecharge;  // waits until the battery is full
      -+recharges(N + 1).
 
-// Failure: the robot missed the dock, or its path was blocked.
++!drive_out_of_dock.
+
+// Failure: the robot could not charge, or not get to a room, and nobody has helped.
 -!recharge[error_msg(Text)]
   <- !give_up(Text).
 
@@ -86,6 +108,13 @@ recharges(0).
      .stopMAS(0, 1).  // the exit status reports the failure
 
 // Back to the room that the robot was in or heading for.
-+!return : atRoom(Number) & room(Number, Room, X, Y)
++!return : atRoom(Number) & room(Number, Room)
   <- .print("back to the ", Room);
-     driveTo(X, Y).
+     !go_to(Number).
+
+// A robot that was lost also returns there.
++!return_to_work
+  <- !return.
+
+// Plans before this line take precedence over those of the library.
+{ include("$jacaros/navigation.asl") }

@@ -60,7 +60,7 @@ can_help(Percent) :- percent_left(Percent) & Percent > 40 & not charging & not o
   <- +charging;
      !hand_over;
      !into_dock;
-     !wait_until_charged;
+     !attempt(wait_until_charged, 1);
      -charging;
      !count;
      !end_of_shift;
@@ -106,19 +106,29 @@ can_help(Percent) :- percent_left(Percent) & Percent > 40 & not charging & not o
 /* The end of the shift: wait in the dock until the shifts of all robots have ended */
 
 +!end_of_shift : shift(Most) & recharges(N) & N >= Most
-  <- +off_duty;
-     .drop_desire(watch);
-     .print("my shift is over");
-     .broadcast(tell, off_duty);
-     .wait(not (colleague(Name) & not off_duty[source(Name)]));
-     .stopMAS.
+  <- .print("my shift is over");
+     !sign_off.
 
 +!end_of_shift.
 
++!sign_off
+  <- +off_duty;
+     .drop_desire(watch);
+     .broadcast(tell, off_duty);
+     .wait(not (colleague(Name) & not off_duty[source(Name)]));
+     ?status(Status);
+     .stopMAS(0, Status).
+
+// The exit status reports that a robot is in need.
+status(1) :- in_need.
+status(0) :- not in_need.
+
 { include("$jacaros/navigation.asl") }
 
-/* Failures that the library could not recover from */
+/* A robot that cannot charge, and that nobody has helped: the others keep its places */
 
 -!keep_charged[error_msg(Text)]
   <- .print("I need help: ", Text);
-     .stopMAS(0, 1).
+     +in_need;
+     .broadcast(tell, in_need);
+     !sign_off.

@@ -12,7 +12,11 @@
 +!fakes
   <- !fake_action(driveTo(_, _), after(1000));
      !fake_action(operationRecharge, after(2000));
-     !fake_action(.stopMAS).
+     !fake_action(.stopMAS);
+     !fake_action(.stopMAS(_, _)).
+
+// What the battery does in the dock.
++recharges(1) <- -+battery(100).
 
 @goes_to_the_dock_when_the_battery_is_low[test]
 +!test_low
@@ -54,6 +58,7 @@
      !fake_action(driveTo(1, 1), failed(blocked, "something stands in my way"));
      +battery(19);
      +diagnostics("Low Battery");
+     !assert_printed("I am stuck: blocked");
      !assert_printed("I need help: something stands in my way");
      !assert_did(.stopMAS(0, 1));
      !assert_not_did(operationRecharge).

@@ -14,6 +14,9 @@
      !fake_action(updateWhereAmI);
      !fake_action(.stopMAS).
 
+// What the battery does in the dock.
++recharges(N) : N > 0 <- -+battery(100).
+
 @cleans_the_room_that_it_is_in[test]
 +!test_room
   <- !fakes;
@@ -49,6 +52,19 @@
      !assert_did(driveTo(1, 1), 1);
      !assert_did(driveTo(2, 2), 2);
      .wait(2000);  // it is on its way back
+     !assert_did(clean(2), 1).
+
+@waits_before_a_closed_door[test]
++!test_door
+  <- !fakes;
+     !fake_action(driveTo(2, 2), failed(blocked(0.5), "something is in the way"));
+     +atRoom(2);
+     !!clean_house;
+     .wait(5000);
+     !assert_printed("something is in my way to the kitchen");
+     !assert_not_did(clean(_));
+     !fake_action(driveTo(2, 2));
+     .wait(3000);
      !assert_did(clean(2), 1).
 
 @stops_after_its_rounds[test]

@@ -35,6 +35,7 @@ watched(north_west).
      .wait(3000);
      !assert_did(dock_at("dock_1"), 1);
      !assert_true(charging);
+     -+battery(20, charging);
      !assert_printed("no robot has time for my places");
      -+battery(96, charging);
      .wait(2000);
@@ -64,10 +65,24 @@ watched(north_west).
 @ends_its_shift_in_the_dock[test]
 +!test_shift
   <- !fakes;
-     !fake_action(.stopMAS);
+     !fake_action(.stopMAS(_, _));
      !!watch;
      -+recharges(2);
      !end_of_shift;
      !assert_did(.stopMAS, 1);
      !assert_false(.desire(watch));
      !assert_printed("my shift is over").
+
+@a_robot_in_need_leaves_its_places_to_the_others[test]
++!test_need
+  <- !fakes;
+     !fake_action(dock_at(_), failed(not_charging, "the contacts are dirty"));
+     !fake_action(.stopMAS(_, _));
+     +battery(20, discharging);
+     !!watch;
+     !!keep_charged;
+     .wait(30000);
+     !assert_printed("I am stuck: not_charging");
+     !assert_printed("I need help: the contacts are dirty");
+     !assert_false(.desire(watch));
+     !assert_did(.stopMAS(0, 1), 1).
