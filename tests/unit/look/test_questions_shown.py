@@ -13,7 +13,7 @@ PROGRAM = """
 !fetch. !name.
 +!fetch
   <- !use_artifact("operator", "Operator");
-     ask("Where is the ball?", [kitchen, hall, go(1, "x")], Place);
+     ask("Where is the ball?", [kitchen, hall, [0.1234, go(1, "x")]], Place);
      +found(Place).
 +!name
   <- .wait({+question(1, _, _)});
@@ -41,13 +41,13 @@ async def test_questions_are_answered_by_keyboard(page) -> None:
     await page.wait_for(
         "[...document.querySelectorAll('.asked .who')].every((each) => each.innerText === 'bob')"
     )
-    assert await page.texts(".asked .answers button") == ["kitchen", "hall", 'go(1,"x")', "Answer"]
+    assert await page.texts(".asked .answers button") == ["kitchen", "hall", '[0.123, go(1,"x")]', "Answer"]
     await page.evaluate("document.querySelector('.answers input').focus()")
     await page.type("Ada")
     await page.evaluate(f"{ANSWERS}[2].focus()")
     await page.press("Enter")
     bob = page.mas.agent("bob")
-    await bob.until('found(go(1, "x")) & said(1, page)')
+    await bob.until('found([0.1234, go(1, "x")]) & said(1, page)')
     await page.wait_for("document.querySelectorAll('.asked').length === 1")
     # The focus has moved to the next question, and what was typed there is still there.
     await page.press("Enter")

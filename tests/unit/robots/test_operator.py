@@ -51,6 +51,8 @@ async def asked(
         (ROOMS, 2, Atom("hall")),
         (ROOMS, " 1 ", Atom("kitchen")),
         ([3, 1], 1, 1),
+        ([3, 1], Structure("option", (1,)), 3),
+        (["no ", "yes"], "no", "no "),
         ([Structure("go", (1, 2))], "go(1,2)", Structure("go", (1, 2))),
         ([], "in the shed", "in the shed"),
     ],
@@ -158,7 +160,14 @@ async def test_a_service_answers_and_then_refuses(lab: Lab, artifact: ArtifactId
 
 @pytest.mark.parametrize(
     "data",
-    ["", "[]", "{}", '{"question": null, "answer": "hall"}', '{"question": 1e999, "answer": ""}', "[" * 100_000],
+    [
+        "",
+        "[]",
+        "{}",
+        '{"question": null, "answer": "hall"}',
+        '{"question": 1e999, "answer": ""}',
+        "[" * 100_000,
+    ],
 )
 async def test_an_unreadable_message_is_logged(lab: Lab, artifact: ArtifactId, data: str) -> None:
     run, _ = await asked(lab, artifact)

@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Protocol
 from jacaros.artifacts.env.artifact import Out, internal_operation, operation
 from jacaros.artifacts.env.environment import write_line
 from jacaros.artifacts.env.errors import OperationFailed
-from jacaros.artifacts.env.values import Atom
+from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.env.values import text as text_of
 from jacaros.robots.kit.options import positive
 from jacaros.robots.kit.ros_artifact import RosArtifact
@@ -49,8 +49,10 @@ class _Question:
         if not self.options:
             return written or None
         for option in self.options:
-            if text_of(option) == written:
+            if text_of(option).strip() == written:
                 return option
+        if isinstance(answer, Structure) and answer.functor == "option" and len(answer.arguments) == 1:
+            written = text_of(answer.arguments[0])
         place = int(written) if written.isdecimal() and len(written) < 4 else 0
         return self.options[place - 1] if 0 < place <= len(self.options) else None
 
@@ -129,7 +131,8 @@ class Operator(RosArtifact):
     def take_answer(self, question: int, answer: object) -> None:
         """Answer the open question with this number.
 
-        Fails with ``no_question(Id)`` if it is not open, and with ``no_option(Answer)``.
+        ``option(N)`` means option N even if another option has the text N. Fails with ``no_question(Id)`` if it is not
+        open, and with ``no_option(Answer)``.
         """
         self._settle(question, answer, self.caller or Atom("unknown"))
 

@@ -21,6 +21,7 @@ from jacaros.agents.terms.values import Var, bare
 from jacaros.artifacts.env.environment import Environment
 from jacaros.artifacts.env.errors import ArtifactId, OperationFailed
 from jacaros.artifacts.env.operation import OperationOutcome, OperationRequest
+from jacaros.artifacts.env.values import Structure
 from jacaros.artifacts.env.values import text as value_text
 from jacaros.look.records.records import FiniteNumber
 from jacaros.robots.world import World
@@ -274,8 +275,9 @@ def artifact_commands(system: System) -> Mapping[str, Command]:
     async def operate(artifact: Text, text: Text) -> str:
         return await _operate(environment(), artifact, text)
 
-    async def answer(artifact: Text, question: int, text: Text) -> None:
-        await _call(environment(), artifact, "answer", (question, text), PAGE)
+    async def answer(artifact: Text, question: int, text: Text, option: int | None = None) -> None:
+        given = text if option is None else Structure("option", (option,))
+        await _call(environment(), artifact, "answer", (question, given), PAGE)
 
     return {"operate": operate, "answer": answer}
 
