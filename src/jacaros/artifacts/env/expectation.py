@@ -7,6 +7,7 @@ a pattern                                matches
 ``"$x"``                                 the argument for the parameter ``x`` of the operation
 ``{"not": P}``                           values that do not match the pattern P
 ``{"in": [P, Q]}``                       values that match one of several patterns
+``[P, Q]``                               lists whose elements match
 ``{"near": 2.5, "by": 0.5}``             numbers that differ by at most 0.5. ``near`` can be a parameter. With
                                          ``"unit": "degrees"`` (or ``"radians"``), full turns do not count
 anything else                            a value that is equal for an agent
@@ -103,6 +104,8 @@ def _matches(pattern: Any, value: object) -> bool:
             return any(_matches(each, value) for each in choices)
         case {"near": centre, "by": most}:
             return _is_number(centre) and _is_number(value) and _gap(pattern, centre, value) <= most
+        case list() if isinstance(value, list | tuple):
+            return len(pattern) == len(value) and all(map(_matches, pattern, value))
     return equal(pattern, value)
 
 
@@ -124,6 +127,8 @@ def _pattern_term(pattern: Any) -> object:
             return Structure("in", ([_pattern_term(each) for each in choices],))
         case {"near": centre, "by": most}:
             return Structure("near", (_pattern_term(centre), most))
+        case list():
+            return [_pattern_term(each) for each in pattern]
     if pattern == "_":
         return Atom("any")
     return Atom(pattern) if isinstance(pattern, str) and re.fullmatch(r"\$?[a-z]\w*", pattern) else pattern
@@ -135,13 +140,15 @@ def mistake_in(pattern: Any, parameters: Sequence[str]) -> tuple[str, str] | Non
     if isinstance(pattern, str) and pattern.startswith("$") and pattern not in known:
         listed = f"parameters: {', '.join(known) or 'none'}"
         return f"the operation has no parameter `{pattern[1:]}`", suggestion(pattern, known, listed)
+    if isinstance(pattern, list):
+        return next(filter(None, (mistake_in(each, parameters) for each in pattern)), None)
     if not isinstance(pattern, dict):
         return None
     keys = set(pattern)
     if keys == {"not"}:
         return mistake_in(pattern["not"], parameters)
     if keys == {"in"} and isinstance(pattern["in"], list):
-        return next(filter(None, (mistake_in(each, parameters) for each in pattern["in"])), None)
+        return mistake_in(pattern["in"], parameters)
     if keys in (_NEAR, {*_NEAR, "unit"}) and pattern.get("unit", "degrees") in _TURNS:
         centre, most = pattern["near"], pattern["by"]
         if _is_number(most) and most >= 0 and (_is_number(centre) or centre in known):

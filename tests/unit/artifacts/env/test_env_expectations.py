@@ -261,6 +261,9 @@ async def test_expectations_are_no_focus_and_leave_nothing_behind(stage):
         ({"near": "$x", "by": 0.5}, float("nan"), False),
         ({"near": "$x", "by": 0.5}, "here", False),
         ("$x", 2, True),
+        (["$x", {"not": "_"}], [2, 3], False),
+        (["$x", "_"], [2, 3], True),
+        (["$x"], [2, 3], False),
     ],
 )
 def test_patterns(pattern, value, matches):
@@ -272,7 +275,7 @@ def test_patterns(pattern, value, matches):
     ("options", "text"),
     [
         ({"expect": Expect("pose", ["$distance"])}, "pose: the operation has no parameter `distance`"),
-        ({"expect": Expect("pose", [{"nera": 1}])}, "pose: invalid pattern; write a constant, _"),
+        ({"expect": Expect("pose", [[{"nera": 1}]])}, "pose: invalid pattern; write a constant, _"),
         ({"expect": Expect("pose", [{"near": "$x", "by": -1}])}, "pose: `near` needs two numbers"),
         ({"expect": Expect("pose", 3)}, "Wrong.go: expected an Expect with a list of patterns, found Expect"),
         ({"meanwhile": {"pose": [3]}}, "expected an Expect with a list of patterns, found 'pose'"),
