@@ -22,6 +22,7 @@ from jacaros.look.why.words import (
     RESTING,
     STOPPING,
     TURNING,
+    name_verb,
     stems,
     words_of,
 )
@@ -133,8 +134,12 @@ def _of_deeds(past: Past, asked: Question, sentence: _Sentence) -> Explanation |
     if sentence.first in WHEN:
         return explain_when(past, asked, found)
     if sentence.first in WHETHER or ends or sentence.is_negated:
+        # Whether it did `dock` is not answered by yes or no if all that is known is the end of `find_dock`.
+        is_named = literal is not None or name_verb(sentence.words, stems(name_of(found[-1].text)))
         why = "why not" if sentence.is_negated else "why"
-        return explain_outcome(past, asked, found, sentence.first if sentence.first in WHETHER else why)
+        return explain_outcome(
+            past, asked, found, sentence.first if sentence.first in WHETHER and is_named else why
+        )
     if found[-1].kind == "event":
         return explain_event(past, replace(asked, about=found[-1].text))
     return explain_why(past, asked, found)

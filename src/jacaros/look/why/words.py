@@ -63,7 +63,7 @@ _SYNONYMS = (
 )
 """Words of people for names of programs. Everything else must be named as the program does."""
 EXACT, OF_PLACE, SIMILAR = 3, 2, 1
-_SMALL = frozenset(("to", "into", "in", "at", "of", "the", "and"))
+_SMALL = frozenset(("to", "into", "in", "at", "of", "the", "and", "operation"))
 
 
 def closeness(
@@ -97,3 +97,9 @@ def closeness(
             return 0, 0
     others = len(own - covered - _SMALL)
     return (total, -others) if total and not (missing and others) else (0, 0)
+
+
+def name_verb(words: Iterable[str], name: Iterable[str]) -> bool:
+    """Return whether stems name the verb of a thing: the first word of its name, such as ``find`` of ``find_dock``."""
+    verb = next((word for word in name if word not in _SMALL), "")
+    return any(closeness([word], [verb], (), ())[0] for word in words)

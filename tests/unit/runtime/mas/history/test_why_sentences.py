@@ -95,6 +95,14 @@ def test_a_sentence_is_about_what_its_words_name(question: str, answer: str, det
     assert details in found.text()
 
 
+def test_the_end_of_something_else_is_no_verdict() -> None:
+    begun = goal(19.0, "!find_dock", "pursued", id=9)
+    answer = explain(
+        [*CHARGING[:8], begun, goal(20.0, "!find_dock", "achieved", id=9)], "did it dock?"
+    ).answer
+    assert answer == "`!find_dock` of guard was achieved at 20.000 s"
+
+
 def test_of_several_robots_the_one_asked_about_is_meant() -> None:
     other = operation(20.0, 90, "rotate(-5)", "began", 0, agent="scout")
     records = [*CHARGING, (19.0, "agent", {"agent": "scout", "state": "began"}), other]
