@@ -24,6 +24,7 @@ REQUESTS = ("add_a_room", "add_an_emergency_stop", "add_a_second_robot")
 
 SIDES = ("agents", "baseline")
 _PRESENT = SCENARIOS["house_cleaning"]
+_PRESENT = _PRESENT._replace(project=_PRESENT.project.with_name("house_cleaning.jcm"))
 _QUOTES = '"""'
 
 
