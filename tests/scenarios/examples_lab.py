@@ -29,7 +29,6 @@ PROJECTS = (
     "08_parcels/parcels.jcm",
     "09_three_robots/three_robots.jcm",
     "10_explore/explore.jcm",
-    "11_narrow_passage/narrow_passage.jcm",
 )
 
 LONGEST = 3000.0

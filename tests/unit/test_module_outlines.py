@@ -151,7 +151,7 @@ def test_an_error_in_a_file_is_reported_with_its_line() -> None:
     assert message.endswith("my.py:3: invalid syntax")
 
 
-@pytest.mark.parametrize("project", ["06_mastermind/mastermind.mas2j", "07_shared_robot", "08_parcels"])
+@pytest.mark.parametrize("project", ["07_shared_robot", "08_parcels"])
 def test_the_findings_about_examples_are_those_of_running_their_code(project: str) -> None:
     path = ROOT / "examples" / project
     assert check_files([path]).diagnostics == check_files([path], imports=True).diagnostics
