@@ -12,7 +12,7 @@ from jacaros.runtime.mas.debugging.breakpoints import LineBreakpoint, lines_that
 PROJECTS = {
     "patrol": (EXAMPLES / "04_patrol" / "patrol.jcm", 25.0),
     "three robots": (EXAMPLES / "09_three_robots" / "three_robots.jcm", 12.0),
-    "parcels": (EXAMPLES / "08_parcels" / "parcels.jcm", 10.0),
+    "cleaning": (EXAMPLES / "05_house_cleaning" / "house_cleaning.jcm", 20.0),
 }
 
 
@@ -50,7 +50,7 @@ def test_pauses_at_random_moments_change_nothing(name: str, seed: int) -> None:
 
 def test_a_run_without_generated_code_is_paused_the_same_way(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("JACAROS_PLAIN", "1")
-    project, seconds = PROJECTS["parcels"]
+    project, seconds = PROJECTS["cleaning"]
     assert (
         observed(project, seconds, pauses_at_random(4, 60, seconds)).lines == observed(project, seconds).lines
     )
@@ -87,7 +87,7 @@ def breakpoints_at_random(seed: int, stops: list[str]):
     return during
 
 
-@pytest.mark.parametrize("name", ["patrol", "three robots"])
+@pytest.mark.parametrize("name", ["patrol", "cleaning"])
 @pytest.mark.parametrize("seed", range(3))
 def test_breakpoints_at_random_change_nothing(name: str, seed: int) -> None:
     project, seconds = PROJECTS[name]
