@@ -267,6 +267,32 @@ place(b, 2, 0, 0).
      !assert_did(undock, 2);
      .drop_desire(keep_charged).
 
+@leaves_a_dock_without_current_before_it_docks[test]
++!test_in_dead_dock
+  <- !fakes;
+     +docked(true);
+     +battery(10, discharging);
+     !!keep_charged;
+     .wait(400);
+     !assert_did(undock, 1);
+     !assert_not_did(dock);
+     .wait(400);
+     !assert_did(dock, 1);
+     .drop_desire(keep_charged).
+
+@stays_in_a_dock_with_current[test]
++!test_in_dock
+  <- !fakes;
+     +docked(true);
+     +battery(10, charging);
+     !!keep_charged;
+     .wait(2000);
+     -+battery(100, full);
+     .wait(1000);
+     !assert_not_did(dock);
+     !assert_did(undock, 1);
+     .drop_desire(keep_charged).
+
 @does_not_leave_a_dock_that_it_is_not_in[test]
 +!test_false_dock
   <- !fakes;

@@ -21,6 +21,7 @@ help_fact(lost) :- lost.
 help_fact(unreachable(Place, Reason)) :- unreachable(Place, Reason).
 
 would_help(no_current, "put me into the dock, or wipe its contacts").
+would_help(not_charging, "put me into the dock, or wipe its contacts").
 would_help(not_docked, "put me into the dock").
 would_help(lost, "show me where I am").
 would_help(unreachable(_), "clear the way").

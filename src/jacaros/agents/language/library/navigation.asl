@@ -240,6 +240,14 @@ patience(300000) :- not slowest_percent(_).
      !attempt(wait_until_charged, 1);
      !out_of_dock.
 
+// A person has put it there.
++!into_dock : docked(true) & not no_current.
+
+// Its dock has given no current; a robot in a dock refuses to dock.
++!into_dock : docked(true)
+  <- !back_out;
+     !attempt(drive_into_dock, 1).
+
 +!into_dock
   <- !attempt(drive_into_dock, 1).
 
