@@ -3,7 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from jacaros.look.metrics import MEASURES, Group, ProgramMetrics, Table, measure, measure_chart
+from counting import Group, measure, measure_chart
+from jacaros.look.metrics import MEASURES, ProgramMetrics, Table
 from jacaros.runtime.files.yaml import plain_values
 from scenarios import FOLDER, SCENARIOS
 

@@ -40,20 +40,18 @@ class Series:
     values: tuple[int, ...]
 
 
-def measure_chart(programs: Sequence[ProgramMetrics], measure: str) -> str:
-    """Return the chart of one measure as SVG: for each program, artifacts on top of agents, next to the baseline.
+def measure_chart(programs: Sequence[ProgramMetrics], measure: str, beside: Sequence[str] = ()) -> str:
+    """Return the chart of one measure as SVG: for each program, artifacts on top of agents.
 
     Args:
         programs: the categories.
         measure: one of `MEASURES`.
+        beside: other groups of the programs; each has a bar next to that of the agents.
     """
-
-    def series(name: str, group: Group) -> Series:
-        return Series(name, tuple(getattr(each.counts(group), measure) for each in programs))
-
-    stacks: list[Sequence[Series]] = [(series("agents", Group.AGENTS), series("artifacts", Group.ARTIFACTS))]
-    if any(each.files.get(Group.BASELINE) for each in programs):
-        stacks.append((series("baseline", Group.BASELINE),))
+    stacks = [
+        [Series(group, tuple(getattr(each.counts(group), measure) for each in programs)) for group in stack]
+        for stack in ((Group.AGENTS, Group.ARTIFACTS), *((each,) for each in beside))
+    ]
     return bar_chart(MEASURES[measure], [each.name for each in programs], stacks)
 
 

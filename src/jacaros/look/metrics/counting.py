@@ -143,12 +143,6 @@ class Group(StrEnum):
     LIBRARY = "library"
     """Parts of the artifacts and plans of jacaros, and of other libraries, that the program uses."""
 
-    BASELINE = "baseline"
-    """Python files of a program without agents and with the same behaviour."""
-
-    BASELINE_LIBRARY = "baseline_library"
-    """Library code that the baseline uses."""
-
 
 @dataclass(frozen=True)
 class ProgramMetrics:
@@ -156,13 +150,13 @@ class ProgramMetrics:
 
     Attributes:
         name: name of its folder.
-        files: files by group, sorted by path; groups without files may be missing.
+        files: files by `Group`, sorted by path; groups without files may be missing, and others may be added.
     """
 
     name: str
-    files: Mapping[Group, tuple[CountedFile, ...]]
+    files: Mapping[str, tuple[CountedFile, ...]]
 
-    def counts(self, group: Group) -> Counts:
+    def counts(self, group: str) -> Counts:
         """Return the counts of one group."""
         return counts_of(self.files.get(group, ()))
 

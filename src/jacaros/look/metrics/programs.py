@@ -1,4 +1,4 @@
-"""The files of programs and baselines by their roles, with the library code that they use."""
+"""The files of programs by their roles, with the library code that they use."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -42,45 +42,43 @@ _SHIPPED: Final = "$jacaros/"
 _TEST_FOLDERS: Final = frozenset({"test", "tests"})
 _TEST_MODULES: Final = ("jacaros.testing", "pytest", "unittest")
 
-Files = dict[Group, tuple[CountedFile, ...]]
+Files = dict[str, tuple[CountedFile, ...]]
 
 
 class MetricsError(SourceError):
     """Raised for source files that cannot be counted."""
 
 
-def measure(
-    folders: Sequence[Path],
-    baselines: Sequence[Iterable[Path]] = (),
-    libraries: Sequence[str] = DEFAULT,
-) -> list[ProgramMetrics]:
-    """Count the programs in folders, each next to its baseline.
+def measure(folders: Sequence[Path], libraries: Sequence[str] = DEFAULT) -> list[ProgramMetrics]:
+    """Count the programs in folders.
 
     Args:
         folders: folders of the programs.
-        baselines: files and folders of the baseline of each program; empty for no baselines at all.
         libraries: names of installed Python packages that count as library code if a program imports them.
 
     Raises:
-        ValueError: the number of baselines differs from that of programs, and is not 0.
-        MetricsError: there are errors in programs or baselines; folders do not exist or have no programs.
+        MetricsError: there are errors in programs; folders do not exist or have no programs.
     """
-    if baselines and len(baselines) != len(folders):
-        raise ValueError(f"expected {len(folders)} baselines, found {len(baselines)}")
     sources = Sources()
     library = Library(sources, libraries)
-    measured = []
-    for number, folder in enumerate(folders):
-        files = _program(folder, sources, library)
-        if baselines:
-            files |= _baseline(baselines[number], sources, library)
-        measured.append(ProgramMetrics(_name(folder, folders), files))
+    measured = [
+        ProgramMetrics(_name(folder, folders), _program(folder, sources, library)) for folder in folders
+    ]
+    check_counted(sources, library)
+    return measured
+
+
+def check_counted(sources: Sources, library: "Library") -> None:
+    """Check that all files were counted.
+
+    Raises:
+        MetricsError: files have errors, or libraries are not installed.
+    """
     for package in sorted(library.missing):
         message = f"library not installed, so it cannot be counted: `{package}`"
         sources.report(Diagnostic("error", message, help=f"pip install {package}"))
     if sources.problems:
         raise MetricsError(list(sources.problems))
-    return measured
 
 
 def _program(folder: Path, sources: Sources, library: "Library") -> Files:
@@ -100,7 +98,7 @@ def _program(folder: Path, sources: Sources, library: "Library") -> Files:
         sources.report(Diagnostic("error", f"cannot read `{folder}`: {error.strerror or error}"))
         return {}
     if len(sources.problems) == before and not program.has_agents:
-        help = "name the folder of a program; Python programs without agents are given by --baseline"
+        help = "name a folder with .asl files or Python agents"
         sources.report(Diagnostic("error", f"no agent programs in `{folder}`", help=help))
     return files
 
@@ -434,54 +432,3 @@ def _names(project: Deployment) -> Iterator[str]:
     for space in project.workspaces:
         yield space.name
         yield from (artifact.name for artifact in space.artifacts)
-
-
-# Baselines: programs without agents with the same behaviour.
-
-
-def _baseline(paths: Iterable[Path], sources: Sources, library: Library) -> Files:
-    """Return the Python files of a baseline by group, after reporting their errors.
-
-    Args:
-        paths: folders, whose Python files count except for tests and launch files; and files, which count together with the
-            neighbouring files that they import.
-        sources: reads the files and collects the reports.
-        library: finds library code.
-    """
-    found: dict[Path, CountedFile] = {}
-    modules: set[str] = set()
-    wanted = [each for path in paths for each in _baseline_files(path, sources)]
-    while wanted:
-        path = wanted.pop(0)
-        file = sources.python(path)
-        if path.resolve() in found or file is None or file.uses(*_TEST_MODULES, "launch"):
-            continue
-        found[path.resolve()] = file.counted
-        modules |= file.modules
-        wanted += _beside(path, file)
-    return {
-        Group.BASELINE: tuple(found[path] for path in sorted(found)),
-        Group.BASELINE_LIBRARY: () if sources.problems else library.files(modules),
-    }
-
-
-def _baseline_files(path: Path, sources: Sources) -> list[Path]:
-    if is_file(path):
-        return [path]
-    if not path.is_dir():
-        sources.report(Diagnostic("error", f"file or folder does not exist: `{path}`"))
-        return []
-    files = _source_files(path, (".py",))
-    if not files:
-        sources.report(Diagnostic("error", f"no Python files in `{path}`"))
-    return files
-
-
-def _beside(path: Path, file: PythonFile) -> Iterator[Path]:
-    """Yield the files that a file imports from its own folder, or by relative names."""
-    for name, level in file.imports:
-        folder = path.resolve().parents[max(0, level - 1)]
-        parts = name.split(".")
-        for length in range(1, len(parts) + 1):
-            place = folder.joinpath(*parts[:length])
-            yield from filter(is_file, (place / "__init__.py", place.with_name(f"{place.name}.py")))

@@ -11,17 +11,7 @@ from jacaros.look.metrics.counting import MEASURES, Counts, Group, ProgramMetric
 TableCell = str | int
 
 _TOTAL: Final = "total"
-_CODE: Final = (Group.AGENTS, Group.ARTIFACTS)
-_BASELINES: Final = (Group.BASELINE, Group.BASELINE_LIBRARY)
-_COLUMNS: Final = (
-    *_CODE,
-    _TOTAL,
-    Group.BASELINE,
-    Group.PROJECTS,
-    Group.WORLDS,
-    Group.LIBRARY,
-    Group.BASELINE_LIBRARY,
-)
+_COLUMNS: Final = (Group.AGENTS, Group.ARTIFACTS, _TOTAL, Group.PROJECTS, Group.WORLDS, Group.LIBRARY)
 
 
 @dataclass(frozen=True)
@@ -45,19 +35,15 @@ class Table:
 def measure_table(programs: Sequence[ProgramMetrics], measure: str) -> Table:
     """Return the table of one measure: a row for each program, a column for each group and for the total of code.
 
-    Columns of baselines are left out if no program has a baseline.
-
     Args:
         programs: the rows.
         measure: one of `MEASURES`.
     """
-    has_baseline = any(program.files.get(Group.BASELINE) for program in programs)
-    columns = [each for each in _COLUMNS if has_baseline or each not in _BASELINES]
     rows = tuple(
-        (program.name, *(getattr(_counts(program, column), measure) for column in columns))
+        (program.name, *(getattr(_counts(program, column), measure) for column in _COLUMNS))
         for program in programs
     )
-    return Table(MEASURES[measure], ("program", *(each.replace("_", " ") for each in columns)), rows)
+    return Table(MEASURES[measure], ("program", *_COLUMNS), rows)
 
 
 def group_table(programs: Sequence[ProgramMetrics]) -> Table:
@@ -84,7 +70,7 @@ def file_table(programs: Sequence[ProgramMetrics]) -> Table:
 
 
 def _counts(program: ProgramMetrics, column: str) -> Counts:
-    return program.total if column == _TOTAL else program.counts(Group(column))
+    return program.total if column == _TOTAL else program.counts(column)
 
 
 def as_text(table: Table) -> str:

@@ -9,20 +9,14 @@ from jacaros.look import metrics
 from jacaros.look.metrics.programs import DEFAULT
 from jacaros.runtime.cli.options import PATH, option
 from jacaros.runtime.cli.outputs import check_output, write_output
-from jacaros.runtime.cli.usage import examples, usage_error
+from jacaros.runtime.cli.usage import examples
 
 
 @click.command(
     "metrics",
-    epilog=examples("jacaros metrics .", "jacaros metrics agents --baseline baseline.py --charts charts"),
+    epilog=examples("jacaros metrics .", "jacaros metrics agents --charts charts"),
 )
 @click.argument("folders", metavar="FOLDER...", type=PATH, nargs=-1, required=True)
-@option(
-    "--baseline PATH...",
-    "Python program (file or folder) to compare with; give one for each FOLDER, in the same order. Repeatable.",
-    PATH,
-    name="baselines",
-)
 @option(
     "--library PACKAGE...",
     "Installed Python package whose imported modules count as library code (default: py_trees). Repeatable.",
@@ -33,7 +27,6 @@ from jacaros.runtime.cli.usage import examples, usage_error
 @option("--charts FOLDER", "Write a bar chart of each measure to FOLDER, as SVG.", PATH)
 def command(
     folders: tuple[Path, ...],
-    baselines: tuple[Path, ...],
     libraries: tuple[str, ...],
     style: str,
     files: bool,
@@ -44,15 +37,10 @@ def command(
     Agents, artifacts, project files, world files and library code are counted separately; the total covers agents and
     artifacts. Tests are not counted, and no code is run. The reference page "Metrics" gives the rules.
     """  # fmt: skip
-    if baselines and len(baselines) != len(folders):
-        raise usage_error(
-            f"expected {len(folders)} baselines, found {len(baselines)}",
-            "give --baseline PATH once for each folder, in the order of the folders",
-        )
     pictures = {name: charts / f"{name}.svg" for name in metrics.MEASURES} if charts is not None else {}
     for path in pictures.values():
         check_output(path, "picture", make_folder=True)
-    programs = metrics.measure(folders, [[path] for path in baselines], libraries or DEFAULT)
+    programs = metrics.measure(folders, libraries or DEFAULT)
     click.echo(_shown(programs, style, files))
     for name, path in pictures.items():
         with suppress(OSError):  # what writing will report

@@ -21,7 +21,7 @@ SQUARE = ProgramMetrics(
     "02_square",
     {
         Group.AGENTS: (source("robot.asl", 18),),
-        Group.BASELINE: (source("square.py", 55), source("pose.py", 18)),
+        "python": (source("square.py", 55), source("pose.py", 18)),
     },
 )
 PATROL = ProgramMetrics(
@@ -31,8 +31,7 @@ PATROL = ProgramMetrics(
         Group.ARTIFACTS: (source("artifacts.py", 20),),
         Group.PROJECTS: (source("patrol.jcm", 5),),
         Group.LIBRARY: (source("navigation.asl", 234),),
-        Group.BASELINE: (source("patrol.py", 162),),
-        Group.BASELINE_LIBRARY: (source("composites.py", 700),),
+        "python": (source("patrol.py", 162),),
     },
 )
 
@@ -40,41 +39,30 @@ PATROL = ProgramMetrics(
 def test_a_table_has_a_row_for_each_program_and_a_column_for_each_group() -> None:
     assert as_text(metrics.measure_table([SQUARE, PATROL], "lines")) == (
         "Physical lines\n"
-        "program    agents  artifacts  total  baseline  projects  worlds  library  baseline library\n"
-        "02_square      18          0     18        73         0       0        0                 0\n"
-        "04_patrol      98         20    118       162         5       0      234               700"
-    )
-
-
-def test_columns_of_baselines_appear_only_with_a_baseline() -> None:
-    alone = ProgramMetrics("01_alone", {Group.AGENTS: SQUARE.files[Group.AGENTS]})
-    assert as_text(metrics.measure_table([alone], "names")) == (
-        "Identifiers, with beliefs and variables of agents\n"
-        "program   agents  artifacts  total  projects  worlds  library\n"
-        "01_alone       2          0      2         0       0        0"
+        "program    agents  artifacts  total  projects  worlds  library\n"
+        "02_square      18          0     18         0       0        0\n"
+        "04_patrol      98         20    118         5       0      234"
     )
 
 
 def test_external_figures_get_a_column() -> None:
     table = metrics.measure_table([SQUARE, PATROL], "code_lines").with_column("thesis | Python", [110, "536"])
     assert metrics.as_markdown(table) == (
-        "| program | agents | artifacts | total | baseline | projects | worlds | library | baseline library "
-        "| thesis \\| Python |\n"
-        "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- |\n"
-        "| 02_square | 18 | 0 | 18 | 73 | 0 | 0 | 0 | 0 | 110 |\n"
-        "| 04_patrol | 98 | 20 | 118 | 162 | 5 | 0 | 234 | 700 | 536 |"
+        "| program | agents | artifacts | total | projects | worlds | library | thesis \\| Python |\n"
+        "| --- | ---: | ---: | ---: | ---: | ---: | ---: | --- |\n"
+        "| 02_square | 18 | 0 | 18 | 0 | 0 | 0 | 110 |\n"
+        "| 04_patrol | 98 | 20 | 118 | 5 | 0 | 234 | 536 |"
     )
     with pytest.raises(ValueError, match="zip"):
         table.with_column("short", [1])
 
 
 def test_csv_has_a_line_for_each_group_with_files() -> None:
-    agents, baseline = (len(gzip.compress(b"x\n" * lines, 9, mtime=0)) for lines in (18, 73))
+    size = len(gzip.compress(b"x\n" * 18, 9, mtime=0))
     assert metrics.as_csv(metrics.group_table([SQUARE])) == (
         "program,group,files,identifiers,names,lines,code_lines,gzip_bytes,gzip_code_bytes\n"
-        f"02_square,agents,1,1,2,18,18,{agents},{agents}\n"
-        f"02_square,total,1,1,2,18,18,{agents},{agents}\n"
-        f"02_square,baseline,2,1,3,73,73,{baseline},{baseline}\n"
+        f"02_square,agents,1,1,2,18,18,{size},{size}\n"
+        f"02_square,total,1,1,2,18,18,{size},{size}\n"
     )
 
 
@@ -85,8 +73,6 @@ def test_a_table_shows_the_files() -> None:
         ("04_patrol", "artifacts", "artifacts.py", 1, 2, 20),
         ("04_patrol", "projects", "patrol.jcm", 1, 2, 5),
         ("04_patrol", "library", "navigation.asl", 1, 2, 234),
-        ("04_patrol", "baseline", "patrol.py", 1, 2, 162),
-        ("04_patrol", "baseline_library", "composites.py", 1, 2, 700),
     ]
 
 
@@ -108,14 +94,14 @@ def bars(svg: str) -> list[tuple[str, float, float]]:
 
 
 def test_a_chart_has_bars_in_proportion_with_artifacts_on_agents() -> None:
-    svg = metrics.measure_chart([SQUARE, PATROL], "lines")
+    svg = metrics.measure_chart([SQUARE, PATROL], "lines", ["python"])
     drawn = bars(svg)
     assert [title for title, _, _ in drawn] == [
         "02_square, agents: 18",
-        "02_square, baseline: 73",
+        "02_square, python: 73",
         "04_patrol, agents: 98",
         "04_patrol, artifacts: 20",
-        "04_patrol, baseline: 162",
+        "04_patrol, python: 162",
     ]
     heights = [height for _, _, height in drawn]
     scale = heights[-1] / 162
@@ -123,7 +109,7 @@ def test_a_chart_has_bars_in_proportion_with_artifacts_on_agents() -> None:
     (_, agents, _), (_, artifacts, height) = drawn[2:4]
     assert artifacts + height == pytest.approx(agents, abs=0.1)
     assert texts(svg) == [
-        *("Physical lines", "agents", "artifacts", "baseline"),
+        *("Physical lines", "agents", "artifacts", "python"),
         *("0", "40", "80", "120", "160", "200"),
         *("18", "73", "118", "162"),
         *("02 square", "04 patrol"),

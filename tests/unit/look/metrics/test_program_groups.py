@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-import py_trees
 import pytest
 
 import jacaros
@@ -29,7 +28,7 @@ def grouped(program: ProgramMetrics, root: Path) -> dict[str, list[str]]:
     return {
         str(group): [file.path.resolve().relative_to(root).as_posix() for file in files]
         for group, files in program.files.items()
-        if files and group not in (Group.LIBRARY, Group.BASELINE_LIBRARY)
+        if files and group != Group.LIBRARY
     }
 
 
@@ -78,13 +77,13 @@ def test_files_are_grouped_by_role(tmp_path: Path) -> None:
 AGENT = "!go.\n+!go.\n"
 
 
-def library(program: ProgramMetrics, group: Group = Group.LIBRARY, root: Path = PACKAGE) -> set[str]:
-    return {file.path.resolve().relative_to(root).as_posix() for file in program.files[group]}
+def library(program: ProgramMetrics) -> set[str]:
+    return {file.path.resolve().relative_to(PACKAGE).as_posix() for file in program.files[Group.LIBRARY]}
 
 
 def test_plans_of_the_package_are_library_code(tmp_path: Path) -> None:
     program = measured(tmp_path, {"a.asl": f'{{ include("$jacaros/navigation.asl") }}\n{AGENT}'})
-    assert library(program) == {"agents/language/library/navigation.asl"}
+    assert library(program) == {f"agents/language/library/{name}.asl" for name in ("help", "navigation")}
     assert program.counts(Group.AGENTS).lines == 3
 
 
@@ -114,46 +113,10 @@ def test_a_shipped_mapping_is_library_code_with_its_reader(tmp_path: Path) -> No
     assert not any(name.endswith("nav2.yaml") or name.startswith("robots/world/") for name in found)
 
 
-BASELINE = {
-    "patrol.py": "import rclpy\nimport steps\nfrom py_trees.common import Status\n\nmain = 1\n",
-    "steps.py": "from .inner import deep\n",
-    "inner/__init__.py": "from ..far import x\n",
-    "inner/deep.py": "y = 1\n",
-    "far.py": "z = 1\n",
-    "other.py": "w = 1\n",
-    "test_patrol.py": "import unittest\n",
-    "patrol_launch.py": "import launch\n",
-}
-
-
-def test_a_baseline_is_a_file_with_what_it_imports_or_a_folder(tmp_path: Path) -> None:
-    write(tmp_path, {"agent/a.asl": AGENT, **{f"python/{name}": text for name, text in BASELINE.items()}})
-    (one,) = measure([tmp_path / "agent"], [[tmp_path / "python" / "patrol.py"]])
-    (all_,) = measure([tmp_path / "agent"], [[tmp_path / "python"]])
-    imported = ["far.py", "inner/__init__.py", "inner/deep.py", "patrol.py", "steps.py"]
-    assert grouped(one, tmp_path)["baseline"] == [f"python/{name}" for name in imported]
-    assert grouped(all_, tmp_path)["baseline"] == [
-        f"python/{name}" for name in sorted([*imported, "other.py"])
-    ]
-    assert one.total == measure([tmp_path / "agent"])[0].total, "the total leaves the baseline out"
-
-
-def test_libraries_of_a_baseline_are_counted_separately(tmp_path: Path) -> None:
-    write(tmp_path, {"agent/a.asl": AGENT, "patrol.py": BASELINE["patrol.py"]})
-    (program,) = measure([tmp_path / "agent"], [[tmp_path / "patrol.py"]])
-    root = Path(py_trees.__file__).parent
-    found = library(program, Group.BASELINE_LIBRARY, root)
-    assert {"__init__.py", "common.py", "composites.py"} <= found
-    (without,) = measure([tmp_path / "agent"], [[tmp_path / "patrol.py"]], libraries=["click"])
-    assert without.files[Group.BASELINE_LIBRARY] == ()
-
-
-def test_a_library_that_is_not_installed_and_a_missing_baseline_are_reported(tmp_path: Path) -> None:
-    write(tmp_path, {"agent/a.asl": AGENT, "patrol.py": "import no_such_library.trees\n"})
+def test_a_library_that_is_not_installed_is_reported(tmp_path: Path) -> None:
+    write(tmp_path, {"a.asl": AGENT, "artifacts.py": "import no_such_library.trees\n"})
     with pytest.raises(MetricsError, match="cannot be counted: `no_such_library`"):
-        measure([tmp_path / "agent"], [[tmp_path / "patrol.py"]], libraries=["no_such_library"])
-    with pytest.raises(ValueError, match="expected 2 baselines, found 1"):
-        measure([tmp_path, tmp_path], [[tmp_path]])
+        measure([tmp_path], libraries=["no_such_library"])
 
 
 def test_programs_in_folders_with_equal_names_are_named_by_path(tmp_path: Path) -> None:

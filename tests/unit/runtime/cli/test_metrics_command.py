@@ -17,23 +17,23 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "square" / "robot.asl").write_text(
         "// A square.\n!drive.\n\n+!drive\n  <- forward(1);\n     turn(90).\n"
     )
-    (tmp_path / "square.py").write_text('"""A square."""\n\n\ndef drive(node):\n    node.speed = 1\n')
+    (tmp_path / "square.py").write_text("x = 1\n")
     return tmp_path
 
 
 def test_each_measure_has_a_table(folder: Path, outcome: Outcome) -> None:
-    code, output, errors = outcome("square", "--baseline", "square.py")
+    code, output, errors = outcome("square")
     assert (code, errors) == (0, "")
     tables = output.rstrip("\n").split("\n\n")
     assert [table.split("\n")[0] for table in tables] == list(MEASURES.values())
     assert tables[2] == (
         "Physical lines\n"
-        "program  agents  artifacts  total  baseline  projects  worlds  library  baseline library\n"
-        "square        6          0      6         5         0       0        0                 0"
+        "program  agents  artifacts  total  projects  worlds  library\n"
+        "square        6          0      6         0       0        0"
     )
-    rows = [table.split("\n")[2].split()[:5] for table in tables]
-    assert rows[0] == ["square", "3", "0", "3", "3"]
-    assert rows[3] == ["square", "4", "0", "4", "2"]
+    rows = [table.split("\n")[2].split()[:4] for table in tables]
+    assert rows[0] == ["square", "3", "0", "3"]
+    assert rows[3] == ["square", "4", "0", "4"]
 
 
 def test_tables_in_markdown_and_csv(folder: Path, outcome: Outcome) -> None:
@@ -97,7 +97,7 @@ def test_all_that_cannot_be_counted_is_reported_in_one_pass(folder: Path, outcom
         "  = help: close the bracket\n"
         "\n"
         "error: no agent programs in `empty`\n"
-        "  = help: name the folder of a program; Python programs without agents are given by --baseline\n"
+        "  = help: name a folder with .asl files or Python agents\n"
         "\n"
         "error: cannot read binary/robot.asl: line 1 contains a NUL byte; this is not a text file\n"
         "\n"
@@ -108,27 +108,4 @@ def test_all_that_cannot_be_counted_is_reported_in_one_pass(folder: Path, outcom
         "\n"
         "error: not a folder: `square.py`\n"
         "  = help: name its folder: `.`\n"
-    )
-
-
-def test_wrong_baselines_are_reported_with_wrong_programs(folder: Path, outcome: Outcome) -> None:
-    (folder / "nothing").mkdir()
-    (folder / "wrong.py").write_text("x = \n")
-    code, _, errors = outcome(
-        *["square"] * 3, *("--baseline", "wrong.py", "--baseline", "nothing", "--baseline", "none.py")
-    )
-    assert code == 1
-    assert [line for line in errors.splitlines() if "error: " in line] == [
-        "wrong.py:1:5: error: not Python: invalid syntax",
-        "error: no Python files in `nothing`",
-        "error: file or folder does not exist: `none.py`",
-    ]
-
-
-def test_each_folder_has_its_baseline(folder: Path, outcome: Outcome) -> None:
-    code, _, errors = outcome("square", "square", "--baseline", "square.py")
-    assert code == 2
-    assert errors == (
-        "error: expected 2 baselines, found 1\n"
-        "  = help: give --baseline PATH once for each folder, in the order of the folders\n"
     )

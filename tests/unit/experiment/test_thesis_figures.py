@@ -8,7 +8,7 @@ import pytest
 from jacaros.look.metrics import MEASURES
 from jacaros.runtime.files.yaml import plain_values
 
-FILE = Path(__file__).parents[4] / "experiment" / "thesis.yaml"
+FILE = Path(__file__).parents[3] / "experiment" / "thesis.yaml"
 
 
 @pytest.fixture(scope="module")

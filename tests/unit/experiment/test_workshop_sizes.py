@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 from types import ModuleType
 
-FOLDER = Path(__file__).parents[4] / "experiment" / "workshop"
+FOLDER = Path(__file__).parents[3] / "experiment" / "workshop"
 
 
 @cache
