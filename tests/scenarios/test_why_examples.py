@@ -14,7 +14,6 @@ RUNS = {
     "01_out_and_back/out_and_back.jcm": 20,
     "04_patrol/patrol.jcm": 70,
     "05_house_cleaning/house_cleaning.jcm": 200,
-    "11_narrow_passage/narrow_passage.jcm": 40,
 }
 """Projects of examples, and for how many seconds they run."""
 
