@@ -19,7 +19,7 @@ corner(4, 0, 0).
 @charge[urgency(10), needs(wheels)]  // takes the wheels from the patrol
 +battery(Percent, _) : Percent < 60 & not .desire(charge)
   <- .print("battery at ", Percent, " %");
-     !charge[achieves(docked(false) & battery(100, _), 2000), retry(3, 5000)].  // the patrol continues to the same corner
+     !charge[achieves(docked(false) & battery(Full, _) & Full > 90, 2000), retry(3, 5000)].  // the patrol continues to the same corner
 
 +!charge
   <- navigate_to(0.4, 1, 0);
