@@ -332,7 +332,7 @@ patience(300000) :- not slowest_percent(_).
 
 +!find_place
   <- !begin_search;
-     !search(1).
+     !search_place(1).
 
 // The robot stands still, and this goal fails: a program's plan for -!find_place can ask for help.
 -!find_place
@@ -345,12 +345,12 @@ patience(300000) :- not slowest_percent(_).
 // Some robots search without being asked.
 -!begin_search.
 
-+!search(_) : not lost.
++!search_place(_) : not lost.
 
-+!search(Number) : Number <= 4
++!search_place(Number) : Number <= 4
   <- !turn_on_the_spot(360);
      !drive_to_open_ground;
-     !search(Number + 1).
+     !search_place(Number + 1).
 
 +!turn_on_the_spot(Degrees)
   <- spin(Degrees).
