@@ -10,8 +10,8 @@ DONE, TOLD, AS_IF_DONE, HUNG = "done", "failed and told", "ended as if done", "h
 ENDS = (DONE, TOLD, AS_IF_DONE, HUNG)
 """The outcomes of runs."""
 
-CALL = re.compile(r"(?<!= )\bhelp\b|\bfailed\b", re.IGNORECASE)
-"""A call for help in the output, or a logged goal that failed; not the suggested fix of an error in a file."""
+CALL = re.compile(r"(?<!= )\bhelp\b|\bwhat shall I do\?|\bfailed\b", re.IGNORECASE)
+"""A call for help, a question to a person, or a logged goal that failed; not the suggested fix of an error in a file."""
 
 
 class Damage(NamedTuple):

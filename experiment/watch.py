@@ -62,7 +62,7 @@ def show(outcome: Outcome, output: list[str], lines: int) -> Outcome:
     print(*faults_for(job.scenario, job.seed).splitlines()[1:3], sep="\n")
     if outcome.complaint:
         print(f"  checker: {outcome.complaint}")
-    print("".join(f"{line}\n" for line in output[-lines or len(output) :]), end="", flush=True)
+    print("".join(f"{line}\n" for line in output[-lines:]), end="", flush=True)
     return outcome
 
 

@@ -126,6 +126,7 @@ def test_runs_are_counted_by_how_they_end() -> None:
     [
         ([(3.0, "[robot] I need help: stuck")], 0, 100.0, 3.0, TOLD),
         ([(3.0, "[robot] driving"), (4.0, "[robot] goal !go failed: blocked")], 0, 50.0, 4.0, TOLD),
+        ([(5.0, "[robot] I am stuck: door(shut). What shall I do?")], 0, 100.0, 5.0, TOLD),
         ([], 1, 60.0, 60.0, TOLD),
         ([(3.0, "[robot] 650 mm from where I started")], 0, 60.0, None, AS_IF_DONE),
         ([(3.0, "  = help: did you mean `go`?")], 0, 100.0, None, HUNG),
