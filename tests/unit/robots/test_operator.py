@@ -154,6 +154,12 @@ async def test_a_service_answers_and_then_refuses(lab: Lab, artifact: ArtifactId
     assert (reply.success, reply.message, run.ok, out.value) == (True, "hall", True, "hall")
     late = await seen.press("/operator/question_1/option_1")
     assert (late.success, late.message) == (False, "question 1 is not open")
+    await asked(lab, artifact)
+    await lab.sleep(0.5)
+    await seen.press("/operator/question_2/option_1")
+    await lab.sleep(0.5)  # the services of the first one are closed, not those of the second one
+    late = await seen.press("/operator/question_2/option_1")
+    assert (late.success, late.message) == (False, "question 2 is not open")
     await lab.sleep(2)
     assert not [name for name in (await lab.backend.contents()).services if "question" in name]
 

@@ -204,7 +204,7 @@ class Operator(RosArtifact):
         if self._open.pop(asked.number, None) is not None:
             self.remove_property("question", asked.number, None, None)
             self._lingering += asked.services
-            self.clock.call_later(LINGER, self._close_services)
+            self.clock.call_later(LINGER, partial(self._close_services, len(asked.services)))
             self._publish()
 
     # ---- where people answer
@@ -254,10 +254,10 @@ class Operator(RosArtifact):
             self.log(f"warning: no services for question {asked.number}: {error}")
             return []
 
-    def _close_services(self) -> None:
-        for each in self._lingering:
+    def _close_services(self, oldest: int | None = None) -> None:
+        for each in self._lingering[:oldest]:
             each.close()
-        self._lingering.clear()
+        del self._lingering[:oldest]
 
     def _publish(self) -> None:
         if self._topic is not None:
