@@ -33,7 +33,7 @@ place(d, 0, 0, 270).
 """
 
 
-def patrol(folder: Path, program: str, *mappings: str) -> RunResult:
+def patrol(folder: Path, program: str, *mappings: str, faults: str | None = None) -> RunResult:
     (folder / "room.yaml").write_text(TINY, encoding="utf-8")
     (folder / "robot.asl").write_text(program, encoding="utf-8")
     focus = ", ".join(f"main.{Path(each).stem}" for each in mappings)
@@ -42,7 +42,7 @@ def patrol(folder: Path, program: str, *mappings: str) -> RunResult:
         f'mas system {{ agent robot {{ focus: {focus} }} world: "room.yaml" mapping: {keys} }}',
         encoding="utf-8",
     )
-    return run_project(folder / "system.jcm", seconds=600)
+    return run_project(folder / "system.jcm", seconds=600, faults=faults)
 
 
 def test_the_plans_with_faked_robots() -> None:
@@ -74,6 +74,18 @@ def test_a_patrol_charges_in_between(tmp_path: Path, beliefs: str, mappings: tup
         near = [abs(sample.x - place[0]) < 0.06 and abs(sample.y - place[1]) < 0.06 for sample in path]
         visits = sum(now and not before for before, now in pairwise(near))
         assert visits >= 2
+
+
+@pytest.mark.parametrize("mapping", ["turtlebot3.yaml", "turtlebot4.yaml"])
+def test_a_dock_without_current_is_reported_in_time(tmp_path: Path, mapping: str) -> None:
+    """A robot that drives into its dock by itself: the library finds out."""
+    program = "+!drive_into_dock <- !go_to(1, 1, 0).  -!keep_charged <- .stopMAS(0, 1)." + PATROL
+    dead = "faults:\n  dead: {kind: dead_dock, dock: dock, at: 0}\n"
+    result = patrol(tmp_path, program, "nav2.yaml", mapping, faults=dead)
+    assert result.exit_code == 1
+    assert any(line.startswith("[robot] I am stuck: no_current.") for line in result.lines)
+    assert result.ground_truth.path()[-1].time < 120
+    assert result.ground_truth.events_of("battery_empty", "bump") == []
 
 
 @pytest.mark.parametrize(
