@@ -20,7 +20,7 @@ def failed(suites: list[Suite]) -> set[str]:
 
 
 def test_every_example_has_tests() -> None:
-    assert len(FOLDERS) == 9
+    assert len(FOLDERS) == 8
     tests = {folder.name: sum(len(suite.tests) for suite in collect([folder])) for folder in FOLDERS}
     assert [name for name, number in tests.items() if number < 2] == []
 
