@@ -20,11 +20,11 @@ pytestmark = made(Operator, Structure("timeout", (60,)))
 class Questions:
     """What another node sees of the questions, and its answers."""
 
-    def __init__(self, node: Any) -> None:
-        self.node = node
+    def __init__(self, node: Any, name: str) -> None:
+        self.node, self.name = node, name
         self.shown: list[list[dict[str, Any]]] = []
-        self._answers = node.publisher("/operator/answer", STRING)
-        node.subscription("/operator/questions", STRING, self._see, LATCHED)
+        self._answers = node.publisher(f"/{name}/answer", STRING)
+        node.subscription(f"/{name}/questions", STRING, self._see, LATCHED)
 
     def _see(self, sample: Any) -> None:
         self.shown.append(json.loads(sample.message.data))
@@ -33,7 +33,7 @@ class Questions:
         self._answers.publish({"data": data})
 
     async def press(self, service: str) -> Any:
-        return await self.node.client(service, TRIGGER).call({}, 5.0)
+        return await self.node.client(f"/{self.name}/{service}", TRIGGER).call({}, 5.0)
 
 
 async def asked(
@@ -112,7 +112,7 @@ async def test_the_default_answers_questions_that_have_it(
 async def test_a_dropped_question_is_withdrawn_everywhere(
     lab: Lab, artifact: ArtifactId, watcher: Watcher
 ) -> None:
-    seen = Questions(await lab.node("panel"))
+    seen = Questions(await lab.node("panel"), artifact.name)
     run, _ = await asked(lab, artifact)
     await asked(lab, artifact, "And where is the box?")
     await run.drop(0.1)
@@ -121,7 +121,7 @@ async def test_a_dropped_question_is_withdrawn_everywhere(
 
 
 async def test_disposing_the_artifact_ends_its_questions(lab: Lab, artifact: ArtifactId) -> None:
-    seen = Questions(await lab.node("panel"))
+    seen = Questions(await lab.node("panel"), artifact.name)
     run, _ = await asked(lab, artifact)
     lab.workspace.dispose_artifact(artifact)
     await lab.sleep(0.1)
@@ -133,9 +133,9 @@ async def test_a_node_that_comes_late_sees_and_answers(
     lab: Lab, artifact: ArtifactId, watcher: Watcher
 ) -> None:
     run, out = await asked(lab, artifact)
-    seen = Questions(await lab.node("panel"))
+    seen = Questions(await lab.node("panel"), artifact.name)
     await lab.sleep(0.1)
-    services = ["/operator/question_1/option_1", "/operator/question_1/option_2"]
+    services = [f"/{artifact.name}/question_1/option_{place}" for place in (1, 2)]
     question = {"question": 1, "agent": "tester", "text": "Where?", "options": ["kitchen", "hall"]}
     assert seen.shown == [[{**question, "services": services}]]
     seen.publish('{"question": 1, "answer": "garage"}')
@@ -149,19 +149,29 @@ async def test_a_node_that_comes_late_sees_and_answers(
 
 async def test_a_service_answers_and_then_refuses(lab: Lab, artifact: ArtifactId) -> None:
     run, out = await asked(lab, artifact)
-    seen = Questions(await lab.node("panel"))
-    reply = await seen.press("/operator/question_1/option_2")
+    seen = Questions(await lab.node("panel"), artifact.name)
+    reply = await seen.press("question_1/option_2")
     assert (reply.success, reply.message, run.ok, out.value) == (True, "hall", True, "hall")
-    late = await seen.press("/operator/question_1/option_1")
+    late = await seen.press("question_1/option_1")
     assert (late.success, late.message) == (False, "question 1 is not open")
     await asked(lab, artifact)
     await lab.sleep(0.5)
-    await seen.press("/operator/question_2/option_1")
+    await seen.press("question_2/option_1")
     await lab.sleep(0.5)  # the services of the first one are closed, not those of the second one
-    late = await seen.press("/operator/question_2/option_1")
+    late = await seen.press("question_2/option_1")
     assert (late.success, late.message) == (False, "question 2 is not open")
     await lab.sleep(2)
     assert not [name for name in (await lab.backend.contents()).services if "question" in name]
+
+
+async def test_each_artifact_has_its_own_topics(lab: Lab, artifact: ArtifactId) -> None:
+    others = await lab.make(Operator, name="2nd operator"), await lab.make(Operator, "r1", name="operator")
+    runs = [(await asked(lab, each))[0] for each in (artifact, *others)]
+    for number, name in enumerate(("_2nd_operator", "r1/operator"), 1):
+        seen = Questions(await lab.node(f"panel_{number}"), name)
+        seen.publish('{"question": 1, "answer": "hall"}')
+        await lab.sleep(0.1)
+        assert [run.outcome is not None for run in runs] == [False, True, number == 2]
 
 
 @pytest.mark.parametrize(
@@ -177,7 +187,7 @@ async def test_a_service_answers_and_then_refuses(lab: Lab, artifact: ArtifactId
 )
 async def test_an_unreadable_message_is_logged(lab: Lab, artifact: ArtifactId, data: str) -> None:
     run, _ = await asked(lab, artifact)
-    Questions(await lab.node("panel")).publish(data)
+    Questions(await lab.node("panel"), artifact.name).publish(data)
     await lab.sleep(0.1)
     assert run.outcome is None
     assert "answer refused: expected JSON" in lab.logged[-1]

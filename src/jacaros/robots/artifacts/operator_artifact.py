@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
@@ -76,9 +77,10 @@ class Operator(RosArtifact):
     answer means an option by its text or its number, from 1; a question without options accepts any text. An answer
     that is not an option is refused with the reason, and the question stays open.
 
-    ROS, below ``operator/``: ``questions`` has the open questions (``std_msgs/msg/String``, latched), a list in JSON of
-    objects with ``question`` (its number), ``agent``, ``text``, ``options``, ``services``, and ``refused`` (why the last
-    answer from ROS was refused). Publish ``{"question": 1, "answer": "kitchen"}`` on ``answer``, or call the service
+    ROS, below the artifact's name (each character that ROS does not allow is ``_``), such as ``operator/``:
+    ``questions`` has the open questions (``std_msgs/msg/String``, latched), a list in JSON of objects with ``question``
+    (its number), ``agent``, ``text``, ``options``, ``services``, and ``refused`` (why the last answer from ROS was
+    refused). Publish ``{"question": 1, "answer": "kitchen"}`` on ``answer``, or call the service
     ``question_1/option_2`` (``std_srvs/srv/Trigger``).
 
     Options:
@@ -103,10 +105,12 @@ class Operator(RosArtifact):
         self._open: dict[int, _Question] = {}
         self._lingering: list[Service] = []
         self.at_dispose(self._close_services)
+        self._ros_name = re.sub(r"^(?=\d)|[^A-Za-z0-9_]", "_", self.name)
         self._topic = None
         if self.resources.get("ros") is not None:
-            self._topic = self.publisher("operator/questions", TEXT, LATCHED)
-            self.kept(self.ros.subscription(self.robot_topic("operator/answer"), TEXT, self._take_message))
+            self._topic = self.publisher(f"{self._ros_name}/questions", TEXT, LATCHED)
+            heard = f"{self._ros_name}/answer"
+            self.kept(self.ros.subscription(self.robot_topic(heard), TEXT, self._take_message))
 
     @operation
     async def ask(self, question: str, options: list[object], answer: Out) -> None:
@@ -226,9 +230,8 @@ class Operator(RosArtifact):
             given = json.loads(sample.message.data)
             number, answer = int(given["question"]), str(given["answer"])
         except (ValueError, OverflowError, TypeError, KeyError, RecursionError):
-            self.log(
-                'answer refused: expected JSON such as {"question": 1, "answer": "yes"} on operator/answer'
-            )
+            form = '{"question": 1, "answer": "yes"}'
+            self.log(f"answer refused: expected JSON such as {form} on {self._ros_name}/answer")
             return
         self.start(self.hear, number, answer, Atom("ros"), cause=sample.cause)
 
@@ -244,7 +247,7 @@ class Operator(RosArtifact):
         try:
             return [
                 self.ros.service(
-                    self.robot_topic(f"operator/question_{asked.number}/option_{place}"),
+                    self.robot_topic(f"{self._ros_name}/question_{asked.number}/option_{place}"),
                     TRIGGER,
                     partial(press, option),
                 )
