@@ -93,6 +93,7 @@ class Operator(RosArtifact):
     Signals:
         answered(Id, Answer, By): a question has been answered. By is ``page``, ``terminal``, ``ros``, ``default``, or
             the agent that called ``answer``.
+        bad_message(Topic, Why): an answer from ROS was refused. Why is ``refused(Answer)`` or ``unreadable(Text)``.
     """
 
     known_options: ClassVar = {"timeout": positive, "default": lambda value: value}
@@ -111,6 +112,7 @@ class Operator(RosArtifact):
             self._topic = self.publisher(f"{self._ros_name}/questions", TEXT, LATCHED)
             heard = f"{self._ros_name}/answer"
             self.kept(self.ros.subscription(self.robot_topic(heard), TEXT, self._take_message))
+            self._faults = self.faults_of(heard)
 
     @operation
     async def ask(self, question: str, options: list[object], answer: Out) -> None:
@@ -157,8 +159,11 @@ class Operator(RosArtifact):
         try:
             self._settle(number, answer, by)
         except OperationFailed as refused:
-            self.log(f"answer refused: {refused.message}")
-            if by == "ros" and number in self._open:
+            if by != "ros":
+                self.log(f"answer refused: {refused.message}")
+                return
+            self._faults.add(Structure("refused", (answer,)), f"answer refused: {refused.message}")
+            if number in self._open:
                 self._open[number].refused = refused.message
                 self._publish()
 
@@ -230,8 +235,8 @@ class Operator(RosArtifact):
             given = json.loads(sample.message.data)
             number, answer = int(given["question"]), str(given["answer"])
         except (ValueError, OverflowError, TypeError, KeyError, RecursionError):
-            form = '{"question": 1, "answer": "yes"}'
-            self.log(f"answer refused: expected JSON such as {form} on {self._ros_name}/answer")
+            told = 'answer refused: expected JSON such as {"question": 1, "answer": "yes"}'
+            self._faults.add(Structure("unreadable", (sample.message.data[:100],)), told)
             return
         self.start(self.hear, number, answer, Atom("ros"), cause=sample.cause)
 
