@@ -88,6 +88,20 @@ async def test_a_refused_answer_leaves_the_question_open(
     assert (run.outcome, watcher.signals, len(watcher.holds("question"))) == (None, [], 1)
 
 
+@pytest.mark.parametrize(
+    ("options", "reason", "message"),
+    [
+        (["yes", " "], 'invalid_option(" ")', "cannot ask `Where?`: option 2 has no text"),
+        (["no ", Atom("no")], "invalid_option(no)", "cannot ask `Where?`: two options have the text `no`"),
+    ],
+)
+async def test_options_that_no_text_selects_are_refused(
+    lab: Lab, artifact: ArtifactId, watcher: Watcher, options: Any, reason: str, message: str
+) -> None:
+    run, _ = await asked(lab, artifact, options=options)
+    assert (run.reason, run.message, watcher.changes) == (reason, message, [])
+
+
 async def test_no_answer_in_time_fails_the_operation(
     lab: Lab, artifact: ArtifactId, watcher: Watcher
 ) -> None:

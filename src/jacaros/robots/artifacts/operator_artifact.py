@@ -116,11 +116,19 @@ class Operator(RosArtifact):
 
     @operation
     async def ask(self, question: str, options: list[object], answer: Out) -> None:
-        """Ask a person, and give the answer: one of *options*, or any text if they are empty.
+        """Ask a person, and give the answer: one of *options*, or any text if there are none.
 
-        Fails with ``no_answer(Seconds)`` after `timeout` without an answer and a `default`. The question is withdrawn
+        Fails with ``no_answer(Seconds)`` after `timeout` without an answer and a `default`, and with
+        ``invalid_option(Option)`` if the text of an option is empty or that of another one. The question is withdrawn
         when its intention is dropped.
         """
+        texts = [text_of(each).strip() for each in options]
+        for place, (each, written) in enumerate(zip(options, texts, strict=True)):
+            if not written or written in texts[:place]:
+                wrong = (
+                    f"two options have the text `{written}`" if written else f"option {place + 1} has no text"
+                )
+                self.fail(f"cannot ask `{question}`: {wrong}", "invalid_option", each)
         asked = self._ask(question, options)
         timer = self.clock.call_later(self._patience, partial(self.start, self.expire, asked.number))
         try:
