@@ -1,6 +1,7 @@
 """The declaration of an operation, made from a marked method or from a function."""
 
 import inspect
+import math
 import typing
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -354,7 +355,23 @@ def _expected(
         for pattern in each.values:
             if mistake := mistake_in(pattern, names):
                 raise InvalidArtifact(f"{name_of(source)}: {each.name}: {'; '.join(mistake)}")
+        if wrong := _wrong_setting(each):
+            raise InvalidArtifact(f"{name_of(source)}: {each.name}: {wrong}")
     return given
+
+
+def _wrong_setting(each: Expect) -> str:
+    """Return what is wrong with the name, the time or the reason of an expectation; empty if nothing is."""
+    is_figure = isinstance(each.within, int | float) and not isinstance(each.within, bool)
+    if not is_figure or not 0 <= each.within < math.inf:
+        return f"within must be a number of seconds, 0 or more, not {each.within!r}"
+    atoms = [("name", each.name)]
+    if each.reason is not None and not isinstance(each.reason, Structure):
+        atoms.append(("reason", each.reason))
+    for what, word in atoms:
+        if not isinstance(word, str) or not word[:1].islower() or not word.replace("_", "a").isalnum():
+            return f"{what} must be a lower-case letter, then letters, digits and _, not {word!r}"
+    return ""
 
 
 def _uses(mark: Mark, source: Callable[..., Any]) -> tuple[tuple[str, ...], WhenPreempted]:

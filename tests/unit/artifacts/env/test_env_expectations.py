@@ -279,6 +279,24 @@ def test_patterns(pattern, value, matches):
         ({"expect": Expect("pose", [{"near": "$x", "by": -1}])}, "pose: `near` needs two numbers"),
         ({"expect": Expect("pose", 3)}, "Wrong.go: expected an Expect with a list of patterns, found Expect"),
         ({"meanwhile": {"pose": [3]}}, "expected an Expect with a list of patterns, found 'pose'"),
+        (
+            {"expect": Expect("pose", [3], within=-1)},
+            "pose: within must be a number of seconds, 0 or more, not -1",
+        ),
+        ({"expect": Expect("pose", [3], within="2")}, "pose: within must be a number of seconds, .* not '2'"),
+        (
+            {"expect": Expect("pose", [3], within=float("nan"))},
+            "within must be a number of seconds, .* not nan",
+        ),
+        (
+            {"meanwhile": Expect("pose", [3], reason="Not there")},
+            "pose: reason must be a lower-case .* 'Not there'",
+        ),
+        ({"meanwhile": Expect("pose", [3], reason=7)}, "pose: reason must be a lower-case letter, .* not 7"),
+        (
+            {"expect": Expect("Pose", [3])},
+            "Pose: name must be a lower-case letter, then letters, .* not 'Pose'",
+        ),
         ({"expect": Expect("bump", signal=True)}, "expected a property in expect, found a signal"),
     ],
 )
