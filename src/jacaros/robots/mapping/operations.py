@@ -414,8 +414,9 @@ def _expectations(node: YamlNode, part: OperationPart) -> tuple[tuple[FilePositi
         reason = belief_name(settings["else"]) if "else" in settings else None
         for (name, values), signal in patterns:
             given = [_pattern(each, part.parameters) for each in values.sequence()]
-            expected = Expect(belief_name(name), given, within, reason, signal)
-            found.append((place_of(name), expected))
+            if given or values.value in (None, []):  # otherwise not a list, which is reported
+                expected = Expect(belief_name(name), given, within, reason, signal)
+                found.append((place_of(name), expected))
     return tuple(found)
 
 

@@ -302,6 +302,13 @@ def test_a_mistake_is_shown_with_its_line() -> None:
     )
 
 
+@pytest.mark.parametrize("value", ["true", "false", "{}"])
+def test_a_pattern_that_is_not_in_a_list_is_reported_once(value: str) -> None:
+    own = "properties: {p: {topic: t, type: std_msgs/msg/Bool, fields: [data]}}"
+    found = told(f"{own}\noperations: {{go: {{service: s, expect: {{p: {value}}}}}}}")
+    assert found == ["2:43: 'p' must be a list | write '- item' lines or [item, item]"]
+
+
 def test_a_file_that_is_not_there_or_not_text(tmp_path: Path) -> None:
     assert find_mapping("no.yaml", (tmp_path,)) is None
     with pytest.raises(MappingError, match="mapping file not found"):
