@@ -1,16 +1,25 @@
 """Answers about events, goals, plans and beliefs: how they were handled, and why."""
 
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import PurePath
 
 from jacaros.look.records import records
-from jacaros.look.why.chains import chain, is_written, place_of, plan_name, plan_text, shown, source_line
-from jacaros.look.why.deeds import deeds_asked_for
+from jacaros.look.why.chains import (
+    chain,
+    is_written,
+    place_of,
+    place_text,
+    plan_name,
+    plan_text,
+    shown,
+    source_line,
+)
+from jacaros.look.why.deeds import deeds_asked_for, is_named, stems
 from jacaros.look.why.explanation import Explanation, Fact, earlier, seconds, times
 from jacaros.look.why.past import Deed, Past, of_agent
 from jacaros.look.why.patterns import Question, QuestionPattern, name_of
-from jacaros.look.why.words import stems
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.files.texts import suggestion
 
@@ -28,82 +37,52 @@ def explain_event(past: Past, asked: Question) -> Explanation:
     if not found:
         return _unhandled(past, asked, pattern)
     t, last = found[-1]
-    goals = (each for each in deeds_asked_for(past, asked) if each.kind == "goal" and _is_of(each, t, last))
-    facts = [
-        *candidates(past, last),
-        *(Fact("goal", f"{shown(each.text)} {each.outcome}") for each in [*goals][:1]),
-        *earlier(at for at, _ in found),
-    ]
-    return replace(explain_deliberation(past, asked.written, t, last), facts=tuple(facts))
-
-
-def _is_of(goal: Deed, t: float, event: records.DeliberationRecord) -> bool:
-    """Return whether an event posted a goal that has ended."""
-    return goal.agent == event.agent and f"+{goal.text}" == event.trigger and (goal.ended or 0.0) >= t
-
-
-def explain_deliberation(
-    past: Past, question: str, t: float, deliberation: records.DeliberationRecord
-) -> Explanation:
-    """Explain one handled event."""
-    facts = tuple(candidates(past, deliberation))
-    return Explanation(question, _headline(past, t, deliberation), t, facts, chain(past, deliberation.id))
-
-
-def _headline(past: Past, t: float, deliberation: records.DeliberationRecord) -> str:
-    agent, trigger = deliberation.agent, shown(deliberation.trigger)
-    plan = past.plan(agent, deliberation.chosen)
-    if plan:
-        file, line = place_of(plan)
-        return f"{agent} handled `{trigger}` at {seconds(t)} with {plan_name(plan)} ({file}:{line})"
-    if deliberation.chosen is not None:
-        return f"{agent} handled `{trigger}` at {seconds(t)} with a plan that it no longer has"
-    relevant = "applicable" if deliberation.options or unexamined(past, deliberation) else "relevant"
-    return f"{agent} has no {relevant} plan for `{trigger}` at {seconds(t)}"
+    agent, trigger, plan = last.agent, shown(last.trigger), past.plan(last.agent, last.chosen)
+    if last.chosen is None:
+        relevant = "applicable" if last.options or unexamined(past, last) else "relevant"
+        answer = f"{agent} has no {relevant} plan for `{trigger}` at {seconds(t)}"
+    else:
+        named = f"{plan_name(plan)} ({place_text(plan)})" if plan else "a plan that it no longer has"
+        answer = f"{agent} handled `{trigger}` at {seconds(t)} with {named}"
+    facts = [*candidates(past, last)]
+    for each in deeds_asked_for(past, asked):
+        if (each.kind, each.agent, f"+{each.text}") == ("goal", agent, last.trigger) and each.at >= t:
+            facts.append(Fact("goal", f"{shown(each.text)} {each.outcome}"))
+            break
+    facts += earlier(at for at, _ in found)
+    return Explanation(asked.written, answer, t, tuple(facts), chain(past, last.id))
 
 
 def unexamined(past: Past, deliberation: records.DeliberationRecord) -> list[records.PlanRecord]:
     """Return the plans for an event that a busy agent did not record."""
     if deliberation.chosen is not None:
         return []
-    named = {option.plan for option in deliberation.options or ()}
+    named, event = {option.plan for option in deliberation.options or ()}, deliberation.trigger
     plans = (plan for _, plan in past.plans(deliberation.agent) if plan.id not in named)
-    return [plan for plan in plans if _is_for(plan.trigger, deliberation.trigger)]
-
-
-def _is_for(trigger: str, event: str) -> bool:
-    if name_of(trigger) != name_of(event):
-        return False
-    try:
-        return QuestionPattern(trigger).fits(event)
-    except UsageError:
-        return False
+    found = []
+    for plan in plans:
+        with suppress(UsageError):  # a truncated trigger
+            if name_of(plan.trigger) == name_of(event) and QuestionPattern(plan.trigger).fits(event):
+                found.append(plan)
+    return found
 
 
 def candidates(past: Past, deliberation: records.DeliberationRecord) -> Iterator[Fact]:
     """Return the relevant plans of an event in order, each with the reason why it was not chosen."""
-    agent, options = deliberation.agent, deliberation.options or ()
-    unknown = "did not apply" if deliberation.chosen is None else _SELECTED
-    for option in options[:MOST]:
-        yield _candidate(past.plan(agent, option.plan), option.why or unknown)
+    agent, options, chosen = deliberation.agent, deliberation.options or (), deliberation.chosen
+    unknown = REFUSED if chosen is None else "applicable too, but another plan was selected"
+    treated = [(past.plan(agent, option.plan), option.why or unknown) for option in options[:MOST]]
     for plan in unexamined(past, deliberation)[:MOST]:
-        is_annotated = "[" in plan.trigger
         busy = "did not apply; not examined, because the agent was busy"
-        yield _candidate(plan, "its annotations do not match" if is_annotated else busy)
-    chosen = past.plan(agent, deliberation.chosen)
-    if chosen:
-        yield _candidate(chosen, "chosen")
-    for number in (deliberation.untried or ())[:MOST]:
-        yield _candidate(past.plan(agent, number), "not tried, because the chosen plan comes before it")
+        treated.append((plan, "its annotations do not match" if "[" in plan.trigger else busy))
+    if past.plan(agent, chosen):
+        treated.append((past.plan(agent, chosen), CHOSEN))
+    later = "not tried, because the chosen plan comes before it"
+    treated += ((past.plan(agent, number), later) for number in (deliberation.untried or ())[:MOST])
+    for each, what in treated:
+        yield Fact("plan", f"`{plan_text(each)}`: {what}", None, "", *place_of(each))
     if len(options) > MOST:
         yield Fact("note", f"{len(options) - MOST} more plans do not apply")
-
-
-_SELECTED = "applicable too, but another plan was selected"
-
-
-def _candidate(plan: records.PlanRecord | None, what: str) -> Fact:
-    return Fact("plan", f"`{plan_text(plan)}`: {what}", None, "", *place_of(plan))
 
 
 def _unhandled(past: Past, asked: Question, pattern: QuestionPattern) -> Explanation:
@@ -129,14 +108,9 @@ def _never(past: Past, asked: Question, pattern: QuestionPattern, what: str) -> 
     facts += _near_plans(past, pattern, agent)
     occurred = [data.trigger for _, data in past.deliberations] + [data.belief for _, data in past.beliefs]
     names = {*map(name_of, occurred), *(name_of(plan.trigger) for _, plan in past.plans())} - {"", name}
-    help = suggestion(name, sorted(names))
-    if help:
-        facts.append(Fact("note", help))
-    seen = sorted({shown(each) for each in occurred if name_of(each) == name})
-    if seen:
-        facts.append(
-            Fact("note", f"recorded with this name: {', '.join(f'`{each}`' for each in seen[:MOST])}")
-        )
+    seen = ", ".join(sorted({f"`{shown(each)}`" for each in occurred if name_of(each) == name})[:MOST])
+    notes = suggestion(name, sorted(names)), f"recorded with this name: {seen}" if seen else ""
+    facts += (Fact("note", each) for each in notes if each)
     return Explanation(asked.written, f"no {what}{who} until {seconds(past.end)}", None, tuple(facts))
 
 
@@ -161,12 +135,9 @@ def explain_plan(past: Past, asked: Question) -> Explanation:
     found = _find(past, asked.about, asked.agent)
     if len({plan.id for _, plan in found}) > 1:
         return explain_event(past, replace(asked, about=found[0][1].trigger))
-    name, plan, considered = max(
-        ((name, plan, _considered(past, name, plan)) for name, plan in found),
-        key=lambda each: each[2][-1][0] if each[2] else -1.0,
-    )
-    file, line = place_of(plan)
-    what = f"{plan_name(plan)} of {name} ({file}:{line})"
+    treated = [(name, plan, _considered(past, name, plan)) for name, plan in found]
+    name, plan, considered = max(treated, key=lambda each: each[2][-1][0] if each[2] else -1.0)
+    what = f"{plan_name(plan)} of {name} ({place_text(plan)})"
     if not considered:
         never = explain_event(past, replace(asked, about=plan.trigger, agent=name))
         facts = Fact("note", never.answer), *never.facts
@@ -188,12 +159,10 @@ def _considered(
     """Return the events that a plan was relevant for, each with how the plan was treated."""
     found = []
     for t, data in of_agent(past.deliberations, agent):
-        if data.chosen == plan.id:
-            found.append((t, data, CHOSEN))
-        elif any(option.plan == plan.id for option in data.options or ()):
-            found.append((t, data, REFUSED))
-        elif plan.id in (data.untried or ()):
-            found.append((t, data, UNTRIED))
+        refused = any(option.plan == plan.id for option in data.options or ())
+        untried = UNTRIED if plan.id in (data.untried or ()) else ""
+        if how := CHOSEN if data.chosen == plan.id else REFUSED if refused else untried:
+            found.append((t, data, how))
     return found
 
 
@@ -207,19 +176,14 @@ def _find(past: Past, about: str, agent: str) -> list[tuple[str, records.PlanRec
         lambda plan: name.removeprefix("+") == plan.trigger.partition("(")[0].removeprefix("+"),
     )
     for is_it in checks:
-        found = [each for each in plans if is_it(each[1])]
-        if found:
+        if found := [each for each in plans if is_it(each[1])]:
             return found
-    names = sorted(
-        {
-            plan_name(plan)
-            if is_written(plan.label)
-            else f"{PurePath(plan.file or '').name}:{plan.line or 0}"
-            for _, plan in plans
-        }
-    )
-    more = ", ..." if len(names) > MOST else ""
-    listed = f"known plans: {', '.join(names[:MOST])}{more}" if names else "the recording has no plans"
+    places = {
+        f"@{each.label}" if is_written(each.label) else PurePath(place_text(each)).name for _, each in plans
+    }
+    more = ", ..." if len(places) > MOST else ""
+    known = ", ".join(sorted(places)[:MOST])
+    listed = f"known plans: {known}{more}" if known else "the recording has no plans"
     raise UsageError(f"error: unknown plan: `{about}`\n  = help: {listed}")
 
 
@@ -234,14 +198,18 @@ def _is_at(plan: records.PlanRecord, about: str) -> bool:
 
 
 def plan_about(past: Past, words: list[str], agent: str) -> str | None:
-    """Return the place of the plan that words describe, by its trigger, label, context and steps; None if there is none."""
+    """Return the place of the plan that words describe, by its trigger, label, context and steps; None if there is none. A
+    plan of a library must have its name from them.
+    """
     found = []
-    for name, plan in past.plans(agent):
+    for name, plan in past.plans(agent) if words else ():
         file, first = place_of(plan)
-        code = " ".join(source_line(past, file, line) for line in range(first, (plan.end or first) + 1))
-        if set(words) <= set(stems(f"{plan.label} {plan_text(plan)} {code}")):
-            found.append((bool(_considered(past, name, plan)), -len(code), f"{file}:{first}"))
-    return max(found)[2] if found else None
+        lines = range(first, (plan.end or first) + 1)
+        code = " ".join(source_line(past, file, line) for line in lines)
+        named = is_named(Deed("goal", plan.trigger, 0.0), words)
+        if {*words} <= {*stems(f"{plan.label} {plan_text(plan)} {code}")} and (named or file[:1] != "$"):
+            found.append((named, bool(_considered(past, name, plan)), -len(code), place_text(plan)))
+    return max(found)[-1] if found else None
 
 
 # ---- beliefs
@@ -255,21 +223,13 @@ def explain_belief(past: Past, asked: Question) -> Explanation:
         return _never(past, asked, pattern, f"belief `{pattern.written}` was recorded")
     t, last = changes[-1]
     does = "came to believe" if last.op == "+" else "stopped believing"
-    before = (
-        Fact("belief", f"before: {data.op}{shown(data.belief)} at {seconds(at)}", at, data.agent)
-        for at, data in reversed(changes[:-1][-MOST_CHANGES:])
-    )
     answer = f"{last.agent} {does} `{shown(last.belief)}` at {seconds(t)}"
-    return Explanation(
-        asked.written, answer, t, (*_changing_step(past, t, last), *before), chain(past, last.cause)
-    )
-
-
-def _changing_step(past: Past, t: float, change: records.BeliefRecord) -> Iterator[Fact]:
-    """Return the step of a plan that changed a belief."""
-    file, line = place_of(change)
-    if file:
-        step = f"the step `{source_line(past, file, line)}` of intention {change.intention} did it"
-        yield Fact("act", step, t, "", file, line)
-    elif not change.cause:
-        yield Fact("note", "it is an initial belief, or was added from outside of the plans")
+    file, line = place_of(last)
+    step = f"the step `{source_line(past, file, line)}` of intention {last.intention} did it"
+    facts = [Fact("act", step, t, "", file, line)] if file else []
+    if not file and not last.cause:
+        facts.append(Fact("note", "it is an initial belief, or was added from outside of the plans"))
+    for at, data in reversed(changes[:-1][-MOST_CHANGES:]):
+        before = f"before: {data.op}{shown(data.belief)} at {seconds(at)}"
+        facts.append(Fact("belief", before, at, data.agent))
+    return Explanation(asked.written, answer, t, tuple(facts), chain(past, last.cause))

@@ -1,12 +1,13 @@
 """Causal chains as lines of an answer: command, operation, step of a plan, event, percept, message; and conditions."""
 
 import re
+from collections.abc import Iterator
 from typing import Any
 
 from jacaros.look.records import records
 from jacaros.look.records.words import named
-from jacaros.look.why.explanation import Fact
-from jacaros.look.why.past import ChainLink, Past
+from jacaros.look.why.explanation import Fact, seconds
+from jacaros.look.why.past import AT_ONCE, ChainLink, Past
 from jacaros.look.why.patterns import name_of
 
 _OF_PERCEPTS = re.compile(r"\[artifact_id\([^\]]*source\(percept\)[^\]]*\]")
@@ -70,7 +71,8 @@ def _fact(past: Past, link: ChainLink) -> Fact:
             how = f", handled by {plan_name(plan)}" if plan else ""
             return Fact("event", f"{shown(record.trigger)}{how}", t, agent, *place_of(plan))
         case _, records.MessageRecord():
-            return Fact("message", message_text(record), t)
+            told = f"{record.sender} to {record.receiver}: {record.performative} {record.content}"
+            return Fact("message", told, t)
         case "act", _:
             plan, file, line = past.plan(agent, cause.plan), *place_of(cause)
             written = source_line(past, file, line)
@@ -84,11 +86,6 @@ def _fact(past: Past, link: ChainLink) -> Fact:
         case "sample", _ if cause.topic and cause.topic not in cause.what:
             return Fact("sample", f"{cause.topic}: {cause.what}", t)
     return Fact(cause.sort, cause.what, t)
-
-
-def message_text(message: records.MessageRecord) -> str:
-    """Return a message between agents as text."""
-    return f"{message.sender} to {message.receiver}: {message.performative} {message.content}"
 
 
 def plan_name(plan: records.PlanRecord) -> str:
@@ -118,6 +115,11 @@ def place_of(
 ) -> tuple[str, int]:
     """Return the file and line that a record names; empty and 0 without one."""
     return ("", 0) if record is None else (record.file or "", record.line or 0)
+
+
+def place_text(plan: records.PlanRecord) -> str:
+    """Return the file and line of a plan."""
+    return f"{plan.file or ''}:{plan.line or 0}"
 
 
 def source_line(past: Past, file: str, line: int) -> str:
@@ -152,3 +154,30 @@ def applied(past: Past, handled: records.DeliberationRecord, t: float) -> Fact |
         return None
     text = with_values(past, handled.agent, plan.context, t, f"`{plan_text(plan)}` applied")
     return Fact("plan", text, t, handled.agent, *place_of(plan))
+
+
+# ---- around a moment
+
+
+def events_before(
+    past: Past, t: float, link: Any, agent: str
+) -> list[tuple[Fact, records.DeliberationRecord]]:
+    """Return the belief events that agents handled just before a moment; those of the same message as *link*, if there are
+    any.
+    """
+    found = []
+    for at, data in past.deliberations:
+        plan = past.plan(data.agent, data.chosen)
+        if t - AT_ONCE <= at <= t and plan and "!" not in data.trigger[:2] and agent in ("", data.agent):
+            handled = f"{shown(data.trigger)} handled at {seconds(at)} with {plan_name(plan)}"
+            found.append((Fact("event", handled, at, data.agent, *place_of(plan)), data))
+    roots = {each.cause.id for each in past.chain(link)}
+    related = [each for each in found if any(other.cause.id in roots for other in past.chain(each[1].id))]
+    return related or found
+
+
+def world_facts(past: Past, t: float, robot: str) -> Iterator[Fact]:
+    """Return what the world did to a robot, or any (``""``), around a moment."""
+    for at, event, whose in past.world:
+        if abs(at - t) <= AT_ONCE and robot in ("", whose):
+            yield Fact("note", f"{whose}: {event} at {seconds(at)}", at)

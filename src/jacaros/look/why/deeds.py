@@ -1,12 +1,14 @@
-"""What happened in a run, found by the words of a question: operations, goals, events, beliefs and changes of the world."""
+"""What happened in a run, found by the words of a question: operations, goals, events, beliefs and changes of the world.
+
+Words of questions and of recorded names are compared by their stems.
+"""
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 
 from jacaros.look.why.chains import shown
 from jacaros.look.why.past import Deed, Past, of_agent
 from jacaros.look.why.patterns import Question, name_of
-from jacaros.look.why.words import closeness, stems
 
 _POSITION = re.compile(r"[(,]\s*(-?\d+(?:\.\d+)?),\s*(-?\d+(?:\.\d+)?)(?=[,)])")
 _NAMED = re.compile(r"[(,]\s*[a-z\"]")
@@ -16,22 +18,18 @@ _ORDER = ("world", "belief", "event", "goal", "operation")
 
 def deeds_asked_for(past: Past, asked: Question) -> list[Deed]:
     """Return everything that happened, but for beliefs, of the agent and to the robot asked about."""
-
-    def is_meant(deed: Deed) -> bool:
-        whose = asked.robot if deed.kind == "world" else asked.agent
-        return "" in (whose, deed.agent) or deed.agent == whose
-
-    return [*filter(is_meant, _deeds(past))]
-
-
-def _deeds(past: Past) -> Iterator[Deed]:
-    yield from past.operations.values()
-    yield from _goals(past)
-    for t, event in past.deliberations:
-        if not {"!", "?"} & set(event.trigger[:2]):
-            yield Deed("event", event.trigger, t, event.agent, link=event.id)
-    for t, what, robot in past.world:
-        yield Deed("world", what, t, robot)
+    events = (
+        Deed("event", event.trigger, t, event.agent, link=event.id)
+        for t, event in past.deliberations
+        if not {"!", "?"} & set(event.trigger[:2])
+    )
+    world = (Deed("world", what, t, robot) for t, what, robot in past.world)
+    found = [
+        each
+        for each in (*past.operations.values(), *_goals(past), *events)
+        if asked.agent in ("", each.agent) or not each.agent
+    ]
+    return found + [each for each in world if asked.robot in ("", each.agent)]
 
 
 def _goals(past: Past) -> Iterable[Deed]:
@@ -83,8 +81,7 @@ def described(past: Past, words: list[str], deeds: Iterable[Deed]) -> list[Deed]
 
 def _closeness(words: list[str], text: str, places: Mapping[tuple[str, str], str]) -> tuple[int, int]:
     plain = shown(text).partition("[source(")[0]
-    name = name_of(plain) or plain
-    return closeness(words, stems(name), stems(plain), stems(place_of_deed(plain, places)))
+    return closeness(words, stems(name_of(plain) or plain), stems(plain), stems(place_of_deed(plain, places)))
 
 
 def place_of_deed(text: str, places: Mapping[tuple[str, str], str]) -> str:
@@ -102,3 +99,104 @@ def places_of(past: Past) -> dict[tuple[str, str], str]:
         if position and (_NAMED.search(belief) or belief.count(",") == 1):
             found.setdefault((position[1], position[2]), belief)
     return found
+
+
+# ---- words
+
+_WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
+_FORMS = "go went gone goes going,drive drove driven,take took taken,fall fell fallen,stand stood,come came,bring brought"
+_IRREGULAR = {form: forms.split()[0] for forms in _FORMS.split(",") for form in forms.split()}
+_SUFFIXES = ("ing", "ed", "es", "s", "e")
+_SHORTEST = 3
+"""Minimum number of letters of a stem that a suffix is cut from."""
+
+
+def stem(word: str) -> str:
+    """Return the stem of a word, the same for ``recharge``, ``recharged`` and ``recharging``."""
+    word = _IRREGULAR.get(word.lower(), word.lower())
+    for suffix in _SUFFIXES:
+        if word.endswith(suffix) and len(word) - len(suffix) >= _SHORTEST:
+            word = word.removesuffix(suffix)
+            break
+    if len(word) > _SHORTEST and word[-1] in ("i", word[-2]):
+        word = f"{word[:-1]}{'y' if word[-1] == 'i' else ''}"
+    return word.removesuffix("y") if word.endswith("ery") else word
+
+
+def stems(text: str) -> list[str]:
+    """Return the stems of the words of a text; those of ``dockAndCharge`` and ``dock_and_charge`` are the same."""
+    return [stem(word) for word in _WORD.findall(text)]
+
+
+def words_of(text: str) -> frozenset[str]:
+    """Return the words of a text."""
+    return frozenset(text.split())
+
+
+def stems_of(text: str) -> frozenset[str]:
+    """Return the stems of the words of a text."""
+    return frozenset(stems(text))
+
+
+MOVING = stems_of("go drive move navigate travel reach arrive come return visit")
+ARRIVING = stems_of("reach arrive come return visit")
+TURNING = stems_of("turn rotate spin")
+STOPPING = stems_of("stop halt")
+RESTING = stems_of("stand still stay idle wait stuck hang nothing silent doing blocked")
+FAILING = stems_of("fail failure wrong error problem")
+ENDING = stems_of(
+    "end finish complete over exit achieve succeed success drop abandon cancel interrupt suspend pause"
+)
+_SYNONYMS = (
+    MOVING,
+    TURNING,
+    stems_of("charge recharge"),
+    stems_of("bump collide collision hit"),
+    stems_of("pick grasp grab take"),
+)
+"""Words of people for names of programs. Everything else must be named as the program does."""
+EXACT, OF_PLACE, SIMILAR = 3, 2, 1
+_SMALL = frozenset(("to", "into", "in", "at", "of", "the", "and", "operation"))
+
+
+def closeness(
+    words: Iterable[str], name: Iterable[str], arguments: Iterable[str], place: Iterable[str]
+) -> tuple[int, int]:
+    """Return how closely words describe a thing: the greater, the closer; (0, 0) if they do not.
+
+    The second number is minus the number of other words in the name. Without those, a verb of motion may be missing: a
+    robot *goes* to the dock by ``dock_at("dock_1")``.
+
+    Args:
+        words: stems of the question.
+        name, arguments: stems of the thing.
+        place: stems of the name of the place that its arguments are the position of.
+    """
+    own, covered, missing, total = {*name}, set[str](), False, 0
+    known = own.union(arguments)
+    for word in words:
+        similar = next((group & own for group in _SYNONYMS if word in group), set[str]())
+        if word in known:
+            covered.add(word)
+            total += EXACT
+        elif word in place:
+            total += OF_PLACE
+        elif similar:
+            covered |= similar
+            total += SIMILAR
+        elif word in MOVING:
+            missing = True
+        else:
+            return 0, 0
+    others = len(own - covered - _SMALL)
+    return (total, -others) if total and not (missing and others) else (0, 0)
+
+
+def is_named(deed: Deed, words: Iterable[str]) -> bool:
+    """Return whether stems name what a deed does, by the first word of its name, such as ``find`` of ``find_dock``; or a
+    belief, by any word of its name.
+    """
+    name = [word for word in stems(name_of(deed.text)) if word not in _SMALL]
+    if deed.kind == "belief":
+        return not {*words}.isdisjoint(name)
+    return any(closeness([word], name[:1], (), ())[0] for word in words)

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from math import nan
 from typing import Any, NamedTuple, TypeVar
 
 from msgspec import ValidationError
@@ -92,7 +91,7 @@ class Past:
         programs: the plans of each agent by id, as in the newest ``program``.
         rules: the rules of each agent as text.
         intentions: the newest record of each, by agent and id.
-        waits: intentions that began to wait for a condition.
+        waits: goals that began to wait for a condition, as (t, agent, goal, condition).
         operations: by id.
         agents: their newest state by name.
         began: when each agent began, in seconds.
@@ -102,7 +101,7 @@ class Past:
         robots: names of robots that appear in records.
         ros: the ROS graph of the run.
         debug: the newest record of the debugger.
-        misplaced: where robots in the embedded world wrongly believed to be, as (t, robot, x, y); NaN when they were right.
+        misplaced: where robots in the embedded world wrongly believed to be, as (t, robot, place); no place if right.
         exit_code: exit code of the run; None if it had not ended.
     """
 
@@ -114,7 +113,7 @@ class Past:
     programs: dict[str, dict[Any, records.PlanRecord]] = field(default_factory=dict)
     rules: dict[str, list[str]] = field(default_factory=dict)
     intentions: dict[tuple[str, Any], tuple[float, records.IntentionRecord]] = field(default_factory=dict)
-    waits: TimedRecords[records.IntentionRecord] = field(default_factory=list)
+    waits: list[tuple[float, str, str, str]] = field(default_factory=list)
     operations: dict[Any, Deed] = field(default_factory=dict)
     agents: dict[str, tuple[float, str]] = field(default_factory=dict)
     began: dict[str, float] = field(default_factory=dict)
@@ -122,7 +121,7 @@ class Past:
     sources: dict[str, list[str]] = field(default_factory=dict)
     world: list[tuple[float, str, str]] = field(default_factory=list)
     robots: set[str] = field(default_factory=set)
-    misplaced: list[tuple[float, str, float, float]] = field(default_factory=list)
+    misplaced: list[tuple[float, str, str]] = field(default_factory=list)
     ros: str = ""
     debug: records.DebugRecord | None = None
     exit_code: int | None = None
@@ -167,8 +166,9 @@ class Past:
             case records.RunRecord():
                 self.ros = data.ros or ""
             case records.BelievedRecord() if self.ros == "memory":
-                x, y = (nan if each is None else each for each in (data.x, data.y))
-                self.misplaced.append((t, data.robot, x, y))
+                is_right = data.x is None or data.y is None
+                where = "" if is_right else f"({data.x:.2f}, {data.y:.2f})"
+                self.misplaced.append((t, data.robot, where))
             case _:
                 self._take_state(t, data)
 
@@ -181,8 +181,8 @@ class Past:
                 self.intentions.pop((data.agent, data.id), None)
             case records.IntentionRecord():
                 self.intentions[data.agent, data.id] = t, data
-                if (data.waits or "").startswith(CONDITION) and data.stack:
-                    self.waits.append((t, data))
+                if data.stack and (condition := awaited(data)):
+                    self.waits.append((t, data.agent, data.stack[-1].goal, condition))
             case records.AgentRecord():
                 self.agents[data.agent] = t, data.state
                 self.began.setdefault(data.agent, t)
@@ -205,25 +205,18 @@ class Past:
 
     def _take_operation(self, t: float, data: records.OperationRecord) -> None:
         deed = Deed(
-            "operation", data.operation, t, data.agent or "", data.state, link=data.id, artifact=data.artifact
+            "operation", data.operation, t, data.agent or "", "began", None, "", data.id, data.artifact
         )
         if data.state != "began":
             known = self.operations.get(data.id, deed)
-            self.operations[data.id] = known._replace(
-                state=data.state, ended=t, why=data.reason or "", end=data
-            )
-            return
-        self.operations[data.id] = deed
-        if data.id not in self.links:
+            deed = known._replace(state=data.state, ended=t, why=data.reason or "", end=data)
+        elif data.id not in self.links:
             cause = records.CauseRecord(
-                data.id,
-                "operation",
-                data.operation,
-                data.cause or 0,
-                agent=data.agent,
-                artifact=data.artifact,
+                data.id, "operation", data.operation, data.cause or 0, None, data.agent
             )
+            cause.artifact = data.artifact
             self.links[data.id] = ChainLink(t, cause)
+        self.operations[data.id] = deed
 
     def plan(self, agent: str | None, plan: Any) -> records.PlanRecord | None:
         """Return a plan of an agent; None if it is unknown."""
@@ -248,6 +241,11 @@ class Past:
 def of_agent(timed: TimedRecords[T], agent: str) -> TimedRecords[T]:
     """Return the records of one agent; all if *agent* is empty."""
     return [each for each in timed if agent in ("", each[1].agent)]
+
+
+def awaited(data: records.IntentionRecord) -> str:
+    """Return the condition that an intention waits for; empty if it waits for anything else."""
+    return data.waits.removeprefix(CONDITION) if data.waits and data.waits.startswith(CONDITION) else ""
 
 
 _WITH_ROBOT = frozenset({"laser", "path", "believed", "artifact"})

@@ -1,6 +1,7 @@
 """Literals in questions, such as ``+alarm(_)`` or ``!go(dock)``, matched against recorded texts."""
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from jacaros.agents.language.diagnostics import AslError
@@ -12,6 +13,9 @@ from jacaros.agents.terms.unifier import Trail, undo, unify
 from jacaros.agents.terms.values import Term, bare
 from jacaros.runtime.errors import UsageError
 
+_PLAN = re.compile(r"@\w+|[\w./\\-]+\.asl:\d+")
+_EVENT = re.compile(r"(?:^|(?<=[\s`'\"]))(?:[+\-]?[!?]|[+\-^])(?=~?[a-z_'])")
+LITERAL = re.compile(r"~?[a-z]\w*(?=\()|(?:(?<=^belief\s)|(?<=changed\s))~?[a-z]\w*")
 _PARTS = re.compile(r"\s*([+\-^]*)\s*([!?]?)\s*(.*)", re.DOTALL)
 _NAME = re.compile(r"~?\s*(?:\w+::)?(?:'[^']*'|[\w.]+)")
 _PLAIN_NAME = re.compile(r"~?(?:\w+::)?(?:'[^']*'|\w+)")
@@ -23,8 +27,8 @@ class Question:
 
     Attributes:
         written: as it was asked.
-        kind: one of `jacaros.look.why.why.KINDS`, or ``name`` (a lone word, which may be a belief, a goal or a label).
-        about: its subject: a literal, a plan, a topic; empty without one.
+        kind: ``event``, ``plan``, ``belief``, ``command``, or ``sentence`` for one in other words.
+        about: its subject: a literal, a plan, a topic, or the sentence.
         agent, robot: the only ones that the answer is about; empty for all.
     """
 
@@ -33,6 +37,37 @@ class Question:
     about: str = ""
     agent: str = ""
     robot: str = ""
+
+    @classmethod
+    def read(cls, written: str, is_sentence: Callable[[str], bool]) -> "Question":
+        """Return the form of a question and its subject.
+
+        Args:
+            written: the question.
+            is_sentence: tells whether a question that begins with this word is a sentence, even if it names an event.
+
+        Raises:
+            UsageError: its event is not an event.
+        """
+        asked = written.strip(" ?.`'\"\n") if written.strip(" `'\"?") else written
+        asked = f"?{asked}" if written.lstrip(" `'\"").startswith("?") else asked
+        words = asked.split()
+        if found := _PLAN.search(asked):
+            return cls(written, "plan", found[0])
+        if words and is_sentence(words[0].lower()):
+            return cls(written, "sentence", asked)
+        if found := _EVENT.search(asked):
+            of_plan = "plan" in asked[: found.start()].split()
+            event = found[0] + literal_at(asked, found.end())
+            QuestionPattern(event)  # raises if it is not a literal
+            return cls(written, "plan" if of_plan else "event", event)
+        if words and (words[0] == "command" or (words[0] == "plan" and words[1:])):
+            return cls(written, words[0], " ".join(words[1:]))
+        if asked.startswith("belief(") and asked.endswith(")"):
+            asked = f"belief {asked.removeprefix('belief(')[:-1]}"
+        if found := LITERAL.search(asked):
+            return cls(written, "belief", literal_at(asked, found.start()))
+        return cls(written, "sentence", asked)
 
 
 class QuestionPattern:

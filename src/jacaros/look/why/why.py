@@ -1,7 +1,7 @@
 """Questions about a run, and their answers from its records.
 
-A question is one of `FORMS`, or a sentence: ``why``, ``when``, ``how often`` or ``did``, and words for what happened. They
-are compared with the names of operations, goals, events and beliefs of this run (`jacaros.look.why.deeds`).
+A question has one of `FORMS`, or is a sentence: ``why``, ``when``, ``how often``, ``did`` or ``is``, and words for what
+happened. They are compared with the names of operations, goals, events and beliefs of this run (`jacaros.look.why.deeds`).
 """
 
 import re
@@ -11,56 +11,80 @@ from typing import Any, NamedTuple
 
 from jacaros.look.records import records
 from jacaros.look.records.records import Record, decoded
-from jacaros.look.why.about_deeds import explain_failure, explain_operation
-from jacaros.look.why.about_events import (
-    explain_belief,
-    explain_deliberation,
-    explain_event,
-    explain_plan,
-)
-from jacaros.look.why.about_motion import explain_command, explain_stop
+from jacaros.look.why.about_deeds import explain_failure, explain_outcome, explain_when, explain_why
+from jacaros.look.why.about_events import CHOSEN, explain_belief, explain_event, explain_plan, plan_about
+from jacaros.look.why.about_motion import explain_command, explain_drive, explain_stop, explain_turn
 from jacaros.look.why.about_now import explain_now
-from jacaros.look.why.deeds import deeds_asked_for
+from jacaros.look.why.chains import with_values
+from jacaros.look.why.deeds import (
+    ARRIVING,
+    ENDING,
+    FAILING,
+    MOVING,
+    RESTING,
+    STOPPING,
+    TURNING,
+    beliefs,
+    deeds_asked_for,
+    described,
+    is_named,
+    stems,
+    words_of,
+)
 from jacaros.look.why.explanation import Explanation, seconds
-from jacaros.look.why.past import Past
-from jacaros.look.why.patterns import Question, QuestionPattern, literal_at, name_of
-from jacaros.look.why.sentences import LITERAL, SUBJECT_FOLLOWS, WHEN, WHETHER, Answer, explain_sentence
+from jacaros.look.why.past import OPEN, Deed, Past
+from jacaros.look.why.patterns import LITERAL, Question, QuestionPattern, literal_at, name_of
+from jacaros.robots.world.data.ground_truth import FIELDS
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.files.texts import help_line, suggestion
+
+Answer = Callable[[Past, Question], Explanation | None]
 
 MOST_NAMES = 12
 """Number of names of each kind that the error for an unknown question lists."""
 
-_PLAN = re.compile(r"@\w+|[\w./\\-]+\.asl:\d+")
-_EVENT = re.compile(r"(?:^|(?<=[\s`'\"]))(?:[+\-]?[!?]|[+\-^])(?=~?[a-z_'])")
-
-
-class _Form(NamedTuple):
-    """How to ask a question in one word, its meaning, and what answers it."""
-
-    written: str
-    meaning: str
-    answer: Answer
-
-
-FORMS: Mapping[str, _Form] = {
-    "stopped": _Form("stopped", "why the robot stopped", explain_stop),
-    "command": _Form("command [TOPIC]", "what led to the last command", explain_command),
-    "operation": _Form("operation [NAME]", "what led to the last operation", explain_operation),
-    "event": _Form(
-        "+EVENT, !GOAL, ...", "how an event, a goal or its failure (`-!`) was handled", explain_event
-    ),
-    "plan": _Form("plan @LABEL, plan FILE:LINE", "when a plan was chosen, and why it was not", explain_plan),
-    "belief": _Form("belief BELIEF", "what last changed a belief, such as `battery(_)`", explain_belief),
-    "waiting": _Form("waiting, nothing", "what each intention waits for", explain_now),
-    "failed": _Form("failed", "what failed last, and why", explain_failure),
+FORMS: Mapping[str, str] = {
+    "why did it VERB ...": "what led to it, such as `why did it go to the dock`",
+    "did it VERB ..., did it achieve GOAL": "whether it succeeded",
+    "when did it ..., how often did it ...": "the times",
+    "stopped": "why the robot stopped",
+    "waiting, nothing": "what each intention waits for",
+    "failed": "what failed last, and why",
+    "operation [NAME]": "what led to the last operation",
+    "command [TOPIC]": "what led to the last command",
+    "+EVENT, !GOAL, ...": "how an event, a goal or its failure (`-!`) was handled",
+    "plan @LABEL, plan FILE:LINE": "when a plan was chosen, and why it was not",
+    "belief BELIEF": "what last changed a belief, such as `battery(_)`",
 }
-"""The questions with a fixed form."""
-_SENTENCES = (
-    ("why did it VERB ...", "what led to it, such as `why did it go to the dock`"),
-    ("did it VERB ..., did it achieve GOAL", "whether it succeeded"),
-    ("when did it ..., how often did it ...", "the times"),
+"""How to ask, and what is answered."""
+
+_WORD = re.compile(r"[A-Za-z]+'[a-z]+|\w+")
+_NOW = words_of("is are am")
+_WHETHER = _NOW | words_of("did does do has have had was were can could will would")
+_WHEN = words_of("when where how")
+_BEFORE_SUBJECT = _WHETHER | {"", "agent", "robot", "for"}
+"""Words before the name of an agent, such as `did`; at the beginning, an empty one. Elsewhere, it may be that of a goal."""
+_NEGATIONS = words_of("not never no")
+_FILLERS = _WHETHER | _WHEN | _NEGATIONS
+_FILLERS |= words_of(
+    "what which who why a an the this that there then here now its it i me my you we us they their robot robots agent "
+    "agents run to into in on of off from for at by with about around up and so because get got something anything someone "
+    "everything need needed want wanted try tried last first again often time times all happen happens happened led make "
+    "made caused changed"
 )
+"""Words that say nothing about what happened."""
+_KINDS = words_of("operation goal event")
+_OUTCOMES = ENDING | FAILING | STOPPING | RESTING | _KINDS | {"plan"}
+"""Words about what else the question names."""
+_SUBJECTS: Sequence[tuple[frozenset[str], Answer]] = (
+    (STOPPING, explain_stop),
+    (RESTING, explain_now),
+    (FAILING, explain_failure),
+    (ENDING, explain_now),
+)
+"""Verbs that need no object, and what answers them."""
+_MOTIONS: Sequence[tuple[frozenset[str], Answer]] = ((TURNING, explain_turn), (MOVING, explain_drive))
+"""Verbs that the commands to the wheels explain if the program has no name for them."""
 
 
 def explain(
@@ -70,7 +94,7 @@ def explain(
 
     Args:
         happened: (t, event, data), as described in docs/reference/recordings.md, the oldest first.
-        question: one of `FORMS`, or a sentence.
+        question: one of `FORMS`, or another sentence.
         at: seconds since the run began; later records are ignored. None: the end of the records.
         agent: only goals, plans and beliefs of this agent; empty for all.
         robot: only commands to this robot; empty for all.
@@ -79,52 +103,24 @@ def explain(
         UsageError: the question is not understood, or names an unknown plan or agent.
     """
     past = Past.of(happened, at)
-    words = question.strip(" ?").split()
     if agent and agent not in past.agents:
         known = ", ".join(past.agents) or "none"
         raise UsageError(f"error: unknown agent: `{agent}`\n  = help: agents until {past.end:.3f} s: {known}")
-    asked = read_question(question)
-    if asked.kind == "sentence":  # elsewhere in a sentence, the name of an agent may be that of a goal
-        words = [
-            word for last, word in zip(("", *words), words, strict=False) if last.lower() in SUBJECT_FOLLOWS
-        ]
+    asked = Question.read(question, (_WHETHER | _WHEN).__contains__)
+    words, about = question.strip(" ?").split(), asked.about
+    if asked.kind == "sentence":
+        subjects, others = [""], [""]
+        for last, word in zip(("", *about.split()), about.split(), strict=False):
+            is_subject = word in {*past.agents, *past.robots} and last.lower() in _BEFORE_SUBJECT
+            (subjects if is_subject else others).append(word)
+        words, about = subjects, " ".join(others).strip()
     agent = agent or next((word for word in words if word in past.agents), "")
     robot = robot or next((word for word in words if word in past.robots), "")
-    asked = replace(asked, agent=agent, robot=robot)
-    answer = FORMS[asked.kind].answer if asked.kind in FORMS else explain_sentence
-    explanation = answer(past, asked)
+    asked = replace(asked, about=about, agent=agent, robot=robot)
+    explanation = _ANSWERS[asked.kind](past, asked)
     if explanation is None:
         raise unknown_question(past, asked)
     return explanation
-
-
-def read_question(written: str) -> Question:
-    """Return the form of a question and its subject; ``sentence`` for one in other words.
-
-    Raises:
-        UsageError: its event is not an event.
-    """
-    asked = written.strip(" ?.`'\"\n") if written.strip(" `'\"?") else written
-    asked = f"?{asked}" if written.lstrip(" `'\"").startswith("?") else asked
-    words = asked.split()
-    sentence = bool(words) and words[0].lower() in WHETHER | WHEN
-    found = _PLAN.search(asked)
-    if found is not None:
-        return Question(written, "plan", found[0])
-    found = _EVENT.search(asked)
-    if found is not None and not sentence:
-        of_plan = "plan" in asked[: found.start()].split()
-        event = found[0] + literal_at(asked, found.end())
-        QuestionPattern(event)  # raises if it is not a literal
-        return Question(written, "plan" if of_plan else "event", event)
-    if words and words != ["plan"] and words[0] in FORMS.keys() - {"event", "belief"}:
-        return Question(written, words[0], " ".join(words[1:]))
-    if asked.startswith("belief(") and asked.endswith(")"):
-        asked = f"belief {asked.removeprefix('belief(')[:-1]}"
-    found = LITERAL.search(asked)
-    if found is not None and not sentence:
-        return Question(written, "belief", literal_at(asked, found.start()))
-    return Question(written, "sentence", asked)
 
 
 def unknown_question(past: Past, asked: Question) -> UsageError:
@@ -132,24 +128,143 @@ def unknown_question(past: Past, asked: Question) -> UsageError:
     names: dict[str, dict[str, None]] = {"operation": {}, "goal": {}, "event": {}, "world": {}}
     for each in sorted(deeds_asked_for(past, asked), key=lambda deed: -deed.began):
         names[each.kind].setdefault(name_of(each.text) or each.text)
-    known = {name for each in names.values() for name in each}
+    known = {name for each in (FORMS, *names.values()) for name in each}
     last = asked.written.strip(" ?`'\"").split()[-1:] or [""]
-    help = suggestion(last[0].lstrip("+-!?"), sorted({*FORMS, *known}))
-    lines = [f"error: unknown question: `{asked.written}`"]
-    if help:
-        lines.append(help_line(help))
+    help = suggestion(last[0].lstrip("+-!?"), sorted(known))
+    lines = [f"error: unknown question: `{asked.written}`", *([help_line(help)] if help else ())]
     for kind, found in names.items():
         if found:
-            more = ", ..." if len(found) > MOST_NAMES else ""
+            listed = ", ".join([*found][:MOST_NAMES]) + (", ..." if len(found) > MOST_NAMES else "")
             title = "events in the world" if kind == "world" else f"{kind}s"
-            lines.append(
-                f"  = help: {title} of this run, newest first: {', '.join([*found][:MOST_NAMES])}{more}"
-            )
-    forms = [*_SENTENCES, *((form.written, form.meaning) for form in FORMS.values())]
-    width = max(len(written) for written, _ in forms)
-    lines.append("  = help: ask one of")
-    lines += [f"      {written:{width}}  {meaning}" for written, meaning in forms]
+            lines.append(f"  = help: {title} of this run, newest first: {listed}")
+    width = max(map(len, FORMS))
+    lines += [
+        "  = help: ask one of",
+        *(f"      {form:{width}}  {meaning}" for form, meaning in FORMS.items()),
+    ]
     return UsageError("\n".join(lines))
+
+
+# ---- sentences
+
+
+class _Sentence(NamedTuple):
+    """The parts of a question: its words in lower case, the first one, and the stems of those that say what happened."""
+
+    said: list[str]
+    first: str
+    words: list[str]
+
+    @classmethod
+    def of(cls, text: str) -> "_Sentence":
+        heard = _WORD.findall(text)
+        said = [word.lower() for word in heard]
+        meant = (word for word in heard if word.lower() not in _FILLERS and "'" not in word)
+        return cls(said, said[0] if said else "", [part for word in meant for part in stems(word)])
+
+    @property
+    def is_negated(self) -> bool:
+        return any(word in _NEGATIONS or word.endswith("n't") for word in self.said)
+
+    def is_only(self, verbs: frozenset[str]) -> bool:
+        return bool(self.words) and verbs.issuperset(self.words)
+
+
+def explain_sentence(past: Past, asked: Question) -> Explanation | None:
+    """Explain what the words of a question describe; None if nothing of this run fits them."""
+    sentence = _Sentence.of(asked.about)
+    if any(name_of(data.belief) == asked.about for _, data in past.beliefs):
+        return explain_belief(past, asked)
+    for verbs, answer in _SUBJECTS:
+        if not verbs.isdisjoint(sentence.words) and sentence.is_only(verbs | MOVING):
+            return answer(past, asked)
+    return (
+        (_of_beliefs(past, asked, sentence) if sentence.first in _NOW else None)
+        or _of_deeds(past, asked, sentence)
+        or next((told(past, asked) for verbs, told in _MOTIONS if sentence.is_only(verbs - ARRIVING)), None)
+        or _of_beliefs(past, asked, sentence)
+        or _of_nothing(past, asked, sentence)
+    )
+
+
+def _of_deeds(past: Past, asked: Question, sentence: _Sentence) -> Explanation | None:
+    """Explain the deeds that a sentence describes, or how they ended; None if there are none."""
+    kinds = _KINDS.intersection(sentence.said)
+    deeds = [each for each in deeds_asked_for(past, asked) if not kinds or each.kind in kinds]
+    words = [word for word in sentence.words if word not in kinds]
+    objects = [word for word in words if word not in _OUTCOMES]
+    literal, ends = LITERAL.search(asked.about), False
+    if literal is not None:
+        pattern = QuestionPattern(literal_at(asked.about, literal.start()))
+        found = [each for each in deeds if pattern.fits_literal(each.text)]
+    elif kinds and not words:
+        found = deeds[-1:]
+    else:
+        found = described(past, words, deeds)
+        if not found and objects:
+            found, ends = described(past, objects, deeds), True
+        if ARRIVING.issuperset(objects):  # without a destination, no drive is meant
+            found = [each for each in found if {*words} <= {*stems(each.text)}]
+    if not found:
+        return None
+    if sentence.first in _WHEN:
+        return explain_when(past, asked, found)
+    last = found[-1]
+    if sentence.first in _WHETHER or ends or sentence.is_negated:
+        # Whether it did `dock` is not answered by yes or no if all that is known is the end of `find_dock`; and whether it
+        # is docked, not by the end of anything.
+        named = literal is not None or is_named(last, words)
+        verdict = sentence.first in _WHETHER and named and (sentence.first not in _NOW or last.state in OPEN)
+        ask = sentence.first if verdict else "why not" if sentence.is_negated else "why"
+        return explain_outcome(past, asked, found, ask)
+    if last.kind == "event":
+        return explain_event(past, replace(asked, about=last.text))
+    return explain_why(past, asked, found)
+
+
+def _of_beliefs(past: Past, asked: Question, sentence: _Sentence) -> Explanation | None:
+    """Explain the beliefs that a sentence describes, or those from which a rule concludes it; None if there are none."""
+    held = beliefs(past, asked.agent)
+    if (
+        sentence.first in _WHETHER
+    ):  # that an agent knows a place for docking says nothing about whether it is docked
+        held = [each for each in held if "source(percept)" in each.text or is_named(each, sentence.words)]
+    found = described(past, sentence.words, held)
+    if found and sentence.first not in _WHEN and MOVING.isdisjoint(sentence.words):
+        return (explain_outcome if sentence.first in _WHETHER else explain_why)(past, asked, found)
+    for agent, rules in past.rules.items() if sentence.first in _NOW else ():
+        heads = (rule.partition(":-")[0].strip() for rule in rules)
+        name = next((each for each in heads if {*stems(name_of(each))} == {*sentence.words}), None)
+        if name is not None and asked.agent in ("", agent):
+            answer = f"a rule of {agent} decides {with_values(past, agent, name, past.end)}"
+            return Explanation(asked.written, answer, past.end)
+    return None
+
+
+def _of_nothing(past: Past, asked: Question, sentence: _Sentence) -> Explanation | None:
+    """Explain what did not happen: a plan, or an event of the world."""
+    plan = plan_about(past, sentence.words, asked.agent) if sentence.first not in _NOW else None
+    if plan is not None:
+        explanation = explain_plan(past, replace(asked, about=plan))
+        denied = "no: " if sentence.first in _WHETHER else "it did not: "
+        done = CHOSEN in explanation.answer
+        return explanation if done else replace(explanation, answer=f"{denied}{explanation.answer}")
+    known = described(past, sentence.words, (Deed("world", each, 0.0) for each in FIELDS))
+    if sentence.first not in _WHETHER | _WHEN or not known or sentence.is_only(MOVING):
+        return None
+    denied = "no: " if sentence.first in _WHETHER else ""
+    return Explanation(
+        asked.written, f"{denied}`{known[-1].text}` was not recorded until {seconds(past.end)}"
+    )
+
+
+_ANSWERS: Mapping[str, Answer] = {
+    "event": explain_event,
+    "plan": explain_plan,
+    "belief": explain_belief,
+    "command": explain_command,
+    "sentence": explain_sentence,
+}
 
 
 # ---- explanations during a run
@@ -181,40 +296,34 @@ class Announcer:
             past = Past.of(self._so_far())
             for asked in self._unmet:
                 self._tell(explain_event(past, Question(asked, about=asked)).text())
-        elif event in _READERS:
+        elif event in ("deliberation", "belief", "goal"):
             record = decoded(event, data)
-            happened = _READERS[event](record)
+            happened = _trigger_of(record)
             for asked, pattern in self._wanted.items():
                 if happened and pattern.fits(happened):
-                    explanation = self._explain(asked, t, record)
-                    if explanation is not None:
-                        self._unmet.pop(asked, None)
-                        self._tell(explanation.text())
-
-    def _explain(self, asked: str, t: float, record: records.EventRecord) -> Explanation | None:
-        past = Past.of(self._so_far())
-        match record:
-            case records.DeliberationRecord():
-                return explain_deliberation(past, asked, t, record)
-            case records.BeliefRecord() if not _has_plan(past, record):
-                return explain_event(past, Question(asked, about=asked, agent=record.agent))
-            case records.GoalRecord():
-                return Explanation(
-                    asked, f"{record.agent}: {record.goal} failed at {seconds(t)}: {record.why}", t
-                )
-        return None
+                    past = Past.of(self._so_far())
+                    if isinstance(record, records.BeliefRecord) and _has_plan(past, record):
+                        continue  # it is explained when it is handled
+                    self._unmet.pop(asked, None)
+                    question = Question(asked, about=asked, agent=record.agent)
+                    explain_it = explain_failure if isinstance(record, records.GoalRecord) else explain_event
+                    self._tell(explain_it(past, question).text())
 
 
-_READERS: Mapping[str, Callable[[Any], str]] = {
-    "deliberation": lambda record: record.trigger,
-    "belief": lambda record: f"{record.op}{record.belief}",
-    "goal": lambda record: record.goal if record.state == "failed" else "",
-}
-"""Functions that return the trigger of an explained event, by kind of record."""
+def _trigger_of(record: Any) -> str:
+    """Return the event of a record; empty if it is not of interest."""
+    match record:
+        case records.DeliberationRecord():
+            return record.trigger
+        case records.BeliefRecord():
+            return f"{record.op}{record.belief}"
+        case records.GoalRecord(state="failed"):
+            return record.goal
+    return ""
 
 
 def _has_plan(past: Past, change: records.BeliefRecord) -> bool:
-    """Return whether a plan may handle a belief change. Then the event is explained when it is handled."""
+    """Return whether a plan may handle a belief change."""
     name = name_of(change.belief)
     triggers = (plan.trigger for _, plan in past.plans(change.agent))
     return any(each.startswith(change.op) and name_of(each) in (name, "") for each in triggers)

@@ -270,7 +270,7 @@ def test_a_stop_of_a_robot_that_others_drive_is_the_end_of_an_operation() -> Non
     ]
     answer = explain(records, "why did robot1 stop?")
     assert answer.answer == (
-        "no agent sent commands to the wheels; the last operation: navigate_to(1,2) of /main/nav failed at 4.000 s: no way"
+        "no agent sent commands to the wheels; the last operation: `navigate_to(1,2)` of guard failed at 4.000 s: no way"
     )
     assert kinds(answer) == ["operation", "act", "event"]
     assert explain(records, "stopped", robot="robot2").t is None

@@ -6,8 +6,8 @@ import pytest
 from guard_story import RECORDS, WHEELS, cause, event, goal, plan, program
 
 from jacaros.look.records.records import Record
+from jacaros.look.why.deeds import stem
 from jacaros.look.why.why import explain
-from jacaros.look.why.words import stem
 from jacaros.runtime.errors import UsageError
 
 UNCHARGED = (
@@ -86,6 +86,11 @@ CHARGING: list[Record] = [
         ("how often did it rotate", "`rotate(90)` happened once", ""),
         ("is the battery low?", "a rule of guard decides `battery_low` with battery(12)", ""),
         ("did it bump into something?", "yes: `bump` of robot1 happened at 12.000 s", ""),
+        ("is it docked?", "`!dock_and_charge` of guard failed at 15.000 s", ""),
+        ("driveTo", "guard started `driveTo(1,1)` at 8.000 s", ""),
+        ("operation", "guard started `rotate(90)` at 16.000 s", ""),
+        ("goal keep", "guard pursued `!keep` at 0.000 s", ""),
+        ("when did it fall?", "`fell` was not recorded until 18.000 s", ""),
         ("did it fall?", "no: `fell` was not recorded until 18.000 s", ""),
     ],
 )  # fmt: skip
@@ -117,6 +122,13 @@ def test_what_did_not_happen_is_explained_by_its_plan() -> None:
     )
 
 
+def test_a_belief_that_names_something_else_is_no_verdict() -> None:
+    known = [belief(0.0, "place(dock,1,1,0)"), belief(0.0, "recharges(1)")]
+    begun = [*RECORDS[:3], program(0.0, [], "help_fact(docked(D)) :- docked(D)."), *known]
+    for question in ("is it docked?", "did it dock?", "is it charging?"):
+        assert "was not recorded" in explain(begun, question).answer
+
+
 def test_an_agent_and_its_goal_may_have_one_name() -> None:
     renamed = [
         (t, kind, {**data, "agent": "charge"} if "agent" in data else data) for t, kind, data in CHARGING
@@ -129,6 +141,7 @@ def test_an_agent_and_its_goal_may_have_one_name() -> None:
 @pytest.mark.parametrize(
     "question",
     [
+        "operation paint",
         "why did it paint the fence?",
         "how far did it drive",
         "did it go to the kitchen?",
