@@ -54,3 +54,16 @@ place(kitchen, 2, 3, 90).
      !!sense_found;
      .wait(2000);
      !assert_did(drive(0, 45, 8), 1).
+
+@a_robot_whose_wheels_drop_stands_until_it_knows_where_it_is[test]
++!test_lifted
+  <- !fake_action(navigate_to(_, _, _), after(1000));
+     +place(far, 9, 9, 0);
+     !!go_to(far);
+     .wait(500);
+     ++hazard(wheel_drop, "wheel_drop_left");
+     ++hazard(wheel_drop, "wheel_drop_right");
+     .wait(100);
+     !assert_true(lifted);
+     .wait(3100);
+     !assert_false(lifted).

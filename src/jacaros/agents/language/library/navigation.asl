@@ -334,10 +334,15 @@ patience(300000) :- not slowest_percent(_).
   <- !begin_search;
      !search_place(1).
 
-// The robot stands still, and this goal fails: a program's plan for -!find_place can ask for help.
+// The robot stands still, and asks a person.
 -!find_place
   <- !stand_for(lost);
-     .fail(error(lost), error_msg("the robot does not find its place on the map"), env_failure_reason(lost)).
+     !advice(lost, Answer);
+     if (Answer \== retry) {
+        .fail(error(lost), error_msg("the robot does not find its place on the map"), env_failure_reason(lost))
+     };
+     !release(lost);
+     !find_place.
 
 +!begin_search
   <- relocalise.
@@ -373,3 +378,19 @@ patience(300000) :- not slowest_percent(_).
   <- !go_to(Place).
 
 +!return_to_work.
+
+// Somebody lifts the robot: it stands until its localisation has had the time to doubt.
++hazard(wheel_drop, _) <- +lifted.
++wheel_drop(_, dropped) <- +lifted.
+
+@navigation__lifted[urgency(20), needs(wheels)]
++lifted
+  <- .wait(lost, 3000, _);
+     -lifted;
+     !work_here.
+
+// The search returns to work.
++!work_here : lost.
+
++!work_here
+  <- !return_to_work.
