@@ -29,9 +29,8 @@ def explain_why(past: Past, asked: Question, found: Sequence[Deed]) -> Explanati
     if place := place_of_deed(last.text, places_of(past)):
         facts.append(Fact("belief", f"the place is `{place}`"))
     facts += earlier(each.began for each in found)
-    return Explanation(
-        asked.written, f"{last.agent} {what}".lstrip(), last.began, tuple(facts), chain(past, last.link)
-    )
+    answer = f"{last.agent} {what}".lstrip()
+    return Explanation(asked.written, answer, last.began, tuple(facts), chain(past, last.link))
 
 
 def _reason(past: Past, deed: Deed) -> tuple[str, list[Fact]]:

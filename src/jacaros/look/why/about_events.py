@@ -6,16 +6,7 @@ from dataclasses import replace
 from pathlib import PurePath
 
 from jacaros.look.records import records
-from jacaros.look.why.chains import (
-    chain,
-    is_written,
-    place_of,
-    place_text,
-    plan_name,
-    plan_text,
-    shown,
-    source_line,
-)
+from jacaros.look.why.chains import chain, code_of, place_of, plan_name, plan_text, shown, source_line, where
 from jacaros.look.why.deeds import deeds_asked_for, is_named, stems
 from jacaros.look.why.explanation import Explanation, Fact, earlier, seconds, times
 from jacaros.look.why.past import Deed, Past, of_agent
@@ -42,7 +33,7 @@ def explain_event(past: Past, asked: Question) -> Explanation:
         relevant = "applicable" if last.options or unexamined(past, last) else "relevant"
         answer = f"{agent} has no {relevant} plan for `{trigger}` at {seconds(t)}"
     else:
-        named = f"{plan_name(plan)} ({place_text(plan)})" if plan else "a plan that it no longer has"
+        named = f"{plan_name(plan)} ({where(plan)})" if plan else "a plan that it no longer has"
         answer = f"{agent} handled `{trigger}` at {seconds(t)} with {named}"
     facts = [*candidates(past, last)]
     for each in deeds_asked_for(past, asked):
@@ -137,15 +128,15 @@ def explain_plan(past: Past, asked: Question) -> Explanation:
         return explain_event(past, replace(asked, about=found[0][1].trigger))
     treated = [(name, plan, _considered(past, name, plan)) for name, plan in found]
     name, plan, considered = max(treated, key=lambda each: each[2][-1][0] if each[2] else -1.0)
-    what = f"{plan_name(plan)} of {name} ({place_text(plan)})"
+    what = f"{plan_name(plan)} of {name} ({where(plan)})"
     if not considered:
         never = explain_event(past, replace(asked, about=plan.trigger, agent=name))
         facts = Fact("note", never.answer), *never.facts
         return Explanation(asked.written, f"{what} was never considered", None, facts, never.because)
     t, data, how = considered[-1]
     answer = f"{what} {how if how == REFUSED else f'was {how}'} for `{shown(data.trigger)}` at {seconds(t)}"
-    counts = {each: sum(treated == each for *_, treated in considered) for each in _COUNTED}
-    told = ", ".join(f"{_COUNTED[each]} {times(count)}" for each, count in counts.items())
+    hows = [how for *_, how in considered]
+    told = ", ".join(f"{word} {times(hows.count(how))}" for how, word in _COUNTED.items())
     facts = (*candidates(past, data), Fact("note", f"until then {told}"))
     return Explanation(asked.written, answer, t, facts, chain(past, data.id))
 
@@ -178,23 +169,19 @@ def _find(past: Past, about: str, agent: str) -> list[tuple[str, records.PlanRec
     for is_it in checks:
         if found := [each for each in plans if is_it(each[1])]:
             return found
-    places = {
-        f"@{each.label}" if is_written(each.label) else PurePath(place_text(each)).name for _, each in plans
-    }
-    more = ", ..." if len(places) > MOST else ""
-    known = ", ".join(sorted(places)[:MOST])
-    listed = f"known plans: {known}{more}" if known else "the recording has no plans"
+    names = ((plan_name(plan), PurePath(where(plan)).name) for _, plan in plans)
+    places = sorted({label if label[0] == "@" else place for label, place in names})
+    known = ", ".join([*places[:MOST], *(["..."] if len(places) > MOST else ())])
+    listed = f"known plans: {known}" if known else "the recording has no plans"
     raise UsageError(f"error: unknown plan: `{about}`\n  = help: {listed}")
 
 
 def _is_at(plan: records.PlanRecord, about: str) -> bool:
     """Return whether a location is in a plan. The file may be named without its folders."""
     file, _, line = about.rpartition(":")
-    if not line.isdigit() or not file:
-        return False
     own, first = place_of(plan)
-    same = PurePath(own).parts[-len(PurePath(file).parts) :] == PurePath(file).parts
-    return same and first <= int(line) <= (plan.end or first)
+    is_there = line.isdigit() and first <= int(line) <= (plan.end or first)
+    return is_there and bool(file) and PurePath(own).match(file)
 
 
 def plan_about(past: Past, words: list[str], agent: str) -> str | None:
@@ -203,12 +190,10 @@ def plan_about(past: Past, words: list[str], agent: str) -> str | None:
     """
     found = []
     for name, plan in past.plans(agent) if words else ():
-        file, first = place_of(plan)
-        lines = range(first, (plan.end or first) + 1)
-        code = " ".join(source_line(past, file, line) for line in lines)
-        named = is_named(Deed("goal", plan.trigger, 0.0), words)
-        if {*words} <= {*stems(f"{plan.label} {plan_text(plan)} {code}")} and (named or file[:1] != "$"):
-            found.append((named, bool(_considered(past, name, plan)), -len(code), place_text(plan)))
+        code = " ".join(line for _, line in code_of(past, plan))
+        named, is_own = is_named(Deed("goal", plan.trigger, 0.0), words), where(plan)[0] != "$"
+        if {*words} <= {*stems(f"{plan.label} {plan_text(plan)} {code}")} and (named or is_own):
+            found.append((named, bool(_considered(past, name, plan)), -len(code), where(plan)))
     return max(found)[-1] if found else None
 
 

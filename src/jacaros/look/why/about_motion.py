@@ -3,10 +3,11 @@
 import re
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import takewhile
 
 from jacaros.look.records import records
 from jacaros.look.why.about_deeds import explain_outcome
-from jacaros.look.why.chains import chain, events_before, place_of, plan_name, shown, world_facts
+from jacaros.look.why.chains import chain, code_of, events_before, plan_name, shown, world_facts
 from jacaros.look.why.deeds import deeds_asked_for
 from jacaros.look.why.explanation import Explanation, Fact, seconds
 from jacaros.look.why.past import AT_ONCE, ChainLink, Past, TimedRecords, of_agent
@@ -30,14 +31,15 @@ def explain_stop(past: Past, asked: Question) -> Explanation:
     commands = _commands(past, asked.robot)
     if not commands:
         return _of_others(past, asked) or _no_command(past, replace(asked, about=""))
-    stop = _stop_of(commands)
-    if stop is None:
+    # The numbers of a command to stop are all zero; one without numbers may stop it, too.
+    stops = [*takewhile(lambda each: not _moves(each), reversed(commands))]
+    if not stops:
         t, last, _ = commands[-1]
         answer = (
             f"no command to stop until {seconds(past.end)}; the last command is `{last.what}` at {seconds(t)}"
         )
         return Explanation(question, answer, t, (*world_facts(past, t, asked.robot),), chain(past, last.id))
-    t, number = stop.t, stop.cause.id
+    t, number = stops[-1].t, stops[-1].cause.id
     because = chain(past, number)
     links = [each.cause for each in past.chain(number)]
     started = next((each for link in links if (each := past.operations.get(link.id))), None)
@@ -56,7 +58,7 @@ def explain_stop(past: Past, asked: Question) -> Explanation:
         # that made its agent suspend or drop it. The reason is in the plan that did so.
         reason = handled[-1][1]
         first = (fact for fact in because[:2] if fact.kind in ("command", "operation"))
-        because = (*first, *own_goals, *_interrupting_step(past, reason), *chain(past, reason.id))
+        because = (*first, *own_goals, *_interrupting_step(past, reason, t), *chain(past, reason.id))
         why = f", because of `{shown(reason.trigger)}`"
     facts = (*(fact for fact, _ in handled), *(fact for _, fact in goals), *world_facts(past, t, asked.robot))
     return Explanation(question, f"{robot} stopped at {seconds(t)}{why}", t, facts[:MOST_FACTS], because)
@@ -126,17 +128,6 @@ def _is_of(past: Past, link: ChainLink, robot: str) -> bool:
     return robot in named or any(past.robots_of.get(each) == robot for each in artifacts)
 
 
-def _stop_of(commands: list[ChainLink]) -> ChainLink | None:
-    """Return the first stop command after the last motion command; None if the last command is a motion."""
-    stop: ChainLink | None = None
-    for each in reversed(commands):
-        # All of its numbers are zero; one without numbers may stop it, too.
-        if _moves(each):
-            break
-        stop = each
-    return stop
-
-
 def _no_command(past: Past, asked: Question) -> Explanation:
     what = f" on `{asked.about}`" if asked.about else ""
     whose = f" for {asked.robot}" if asked.robot else ""
@@ -166,23 +157,20 @@ def _interrupted(goals: TimedRecords[records.GoalRecord]) -> Fact:
     return Fact("goal", f"{shown(data.goal)}{more} {data.state} at {seconds(at)}{why}", at, data.agent)
 
 
-def _interrupting_step(past: Past, deliberation: records.DeliberationRecord) -> Iterator[Fact]:
-    """Return the step of a chosen plan that suspends or drops intentions, or takes resources from them, if there is
-    exactly one.
+def _interrupting_step(past: Past, reason: records.DeliberationRecord, t: float) -> Iterator[Fact]:
+    """Return the step that suspends or drops intentions, or takes resources from them, in the plan for an event or for the
+    goals that followed from it until *t*, if there is exactly one.
     """
-    plan = past.plan(deliberation.agent, deliberation.chosen)
-    if plan is None:
-        return
-    file, first = place_of(plan)
-    code = enumerate(
-        (line.split("//")[0] for line in past.sources.get(file, [])[first - 1 : plan.end or first]), first
-    )
-    found = [
-        (number, f"{match.group(1) or ''}{literal_at(line, match.end())}")
-        for number, line in code
-        for match in _INTERRUPTS.finditer(line)
-    ]
+    until = [data for at, data in past.deliberations if at <= t]
+    followed = [each for each in until if reason.id in {link.cause.id for link in past.chain(each.id)}]
+    found = []
+    for plan in {
+        id(plan): plan for each in followed if (plan := past.plan(each.agent, each.chosen))
+    }.values():
+        for number, line in code_of(past, plan):
+            for match in _INTERRUPTS.finditer(line):
+                step = f"{match.group(1) or ''}{literal_at(line, match.end())}"
+                what = f"{'step ' if match.group(1) else ''}`{step}` of {plan_name(plan)}"
+                found.append(Fact("act", what, None, reason.agent, plan.file or "", number))
     if len(found) == 1:
-        number, step = found[0]
-        what = "step " if step[0] == "." else ""
-        yield Fact("act", f"{what}`{step}` of {plan_name(plan)}", None, deliberation.agent, file, number)
+        yield from found

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from itertools import islice
 
 from jacaros.look.records import records
-from jacaros.look.why.chains import applied, chain, place_of, shown, source_line, with_values
+from jacaros.look.why.chains import applied, chain, code_of, place_of, shown, source_line, with_values
 from jacaros.look.why.deeds import deeds_asked_for
 from jacaros.look.why.explanation import Explanation, Fact, seconds
 from jacaros.look.why.past import Past, TimedRecords, awaited, of_agent
@@ -67,12 +67,11 @@ def ending_step(past: Past) -> Fact | None:
     for _, data in past.intentions.values() if past.exit_code is not None else ():
         top = data.stack[-1] if data.stack else None
         plan = past.plan(data.agent, top.plan) if top and data.state == "runs" else None
-        file, first = place_of(plan)
-        for line in range(first, (plan.end or first) + 1 if plan else 0):
-            _, found, step = source_line(past, file, line).partition(_END)
-            if found and top:
+        for line, code in code_of(past, plan):
+            _, found, step = code.partition(_END)
+            if found and top and plan:
                 told = f"`{_END}{step}` for `{shown(top.goal)}`"
-                return Fact("act", told, None, data.agent, file, line)
+                return Fact("act", told, None, data.agent, plan.file or "", line)
     return None
 
 

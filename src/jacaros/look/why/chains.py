@@ -10,6 +10,7 @@ from jacaros.look.why.explanation import Fact, seconds
 from jacaros.look.why.past import AT_ONCE, ChainLink, Past
 from jacaros.look.why.patterns import name_of
 
+_Placed = records.PlanRecord | records.CauseRecord | records.BeliefRecord | records.StackedGoal
 _OF_PERCEPTS = re.compile(r"\[artifact_id\([^\]]*source\(percept\)[^\]]*\]")
 
 LONGEST_CHAIN = 40
@@ -110,14 +111,12 @@ def shown(text: object) -> str:
     return _OF_PERCEPTS.sub("[source(percept)]", named(str(text)))
 
 
-def place_of(
-    record: records.PlanRecord | records.CauseRecord | records.BeliefRecord | records.StackedGoal | None,
-) -> tuple[str, int]:
+def place_of(record: _Placed | None) -> tuple[str, int]:
     """Return the file and line that a record names; empty and 0 without one."""
     return ("", 0) if record is None else (record.file or "", record.line or 0)
 
 
-def place_text(plan: records.PlanRecord) -> str:
+def where(plan: records.PlanRecord) -> str:
     """Return the file and line of a plan."""
     return f"{plan.file or ''}:{plan.line or 0}"
 
@@ -129,6 +128,13 @@ def source_line(past: Past, file: str, line: int) -> str:
         return ""
     code = lines[line - 1].partition("//")[0].strip()
     return code.removeprefix("<-").strip().rstrip(";.")
+
+
+def code_of(past: Past, plan: records.PlanRecord | None) -> list[tuple[int, str]]:
+    """Return the numbered lines of a plan."""
+    file, first = place_of(plan)
+    last = (plan.end if plan else None) or first
+    return [(line, source_line(past, file, line)) for line in range(first, last + 1)]
 
 
 def with_values(past: Past, agent: str, condition: str, t: float, told: str = "") -> str:

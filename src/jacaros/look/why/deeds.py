@@ -5,6 +5,7 @@ Words of questions and of recorded names are compared by their stems.
 
 import re
 from collections.abc import Iterable, Mapping
+from functools import cache, partial
 
 from jacaros.look.why.chains import shown
 from jacaros.look.why.past import Deed, Past, of_agent
@@ -24,11 +25,8 @@ def deeds_asked_for(past: Past, asked: Question) -> list[Deed]:
         if not {"!", "?"} & set(event.trigger[:2])
     )
     world = (Deed("world", what, t, robot) for t, what, robot in past.world)
-    found = [
-        each
-        for each in (*past.operations.values(), *_goals(past), *events)
-        if asked.agent in ("", each.agent) or not each.agent
-    ]
+    own = (*past.operations.values(), *_goals(past), *events)
+    found = [each for each in own if "" in (asked.agent, each.agent) or each.agent == asked.agent]
     return found + [each for each in world if asked.robot in ("", each.agent)]
 
 
@@ -65,12 +63,10 @@ def beliefs(past: Past, agent: str) -> Iterable[Deed]:
 
 def described(past: Past, words: list[str], deeds: Iterable[Deed]) -> list[Deed]:
     """Return the deeds that words describe best, of the same name, the oldest first; empty if there are none."""
-    places, known = places_of(past), dict[str, tuple[int, int]]()
+    closeness_of = cache(partial(_closeness, words, places_of(past)))
 
     def fit(deed: Deed) -> tuple[int, bool, int, int]:
-        if deed.text not in known:
-            known[deed.text] = _closeness(words, deed.text, places)
-        score, others = known[deed.text]
+        score, others = closeness_of(deed.text)
         return score, deed.kind != "world", others, _ORDER.index(deed.kind)
 
     fits = [(fit(each), each) for each in deeds]
@@ -79,7 +75,7 @@ def described(past: Past, words: list[str], deeds: Iterable[Deed]) -> list[Deed]
     return [each for each in found if name_of(each.text) == name_of(found[-1].text)]
 
 
-def _closeness(words: list[str], text: str, places: Mapping[tuple[str, str], str]) -> tuple[int, int]:
+def _closeness(words: list[str], places: Mapping[tuple[str, str], str], text: str) -> tuple[int, int]:
     plain = shown(text).partition("[source(")[0]
     return closeness(words, stems(name_of(plain) or plain), stems(plain), stems(place_of_deed(plain, places)))
 

@@ -56,9 +56,8 @@ class Explanation:
 
     def text(self) -> str:
         """Return the answer as lines: its facts, then the causal chain with times."""
-        return "\n".join(
-            (self.answer, *(f"  {each.written()}" for each in self.facts), *_chain(self.because))
-        )
+        facts = (f"  {each.written()}" for each in self.facts)
+        return "\n".join((self.answer, *facts, *_chain(self.because)))
 
     def data(self) -> dict[str, Any]:
         """Return the answer as JSON data."""

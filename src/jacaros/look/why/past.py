@@ -152,17 +152,13 @@ class Past:
                 self.links[data.id] = ChainLink(at, data) if known is None else known._replace(t=at)
             case records.DeliberationRecord():
                 self.deliberations.append((t, data))
-                cause = records.CauseRecord(
-                    data.id, "event", data.trigger, data.parent or 0, agent=data.agent
-                )
-                self.links[data.id] = ChainLink(
-                    self.links[data.id].t if data.id in self.links else t, cause, data
-                )
+                cause = _cause(data.id, "event", data.trigger, data.parent, data.agent)
+                known = self.links.get(data.id)
+                self.links[data.id] = ChainLink(t if known is None else known.t, cause, data)
             case records.OperationRecord():
                 self._take_operation(t, data)
             case records.MessageRecord(id=int(number)) if number not in self.links:
-                cause = records.CauseRecord(number, "message", data.content, data.cause or 0)
-                self.links[number] = ChainLink(t, cause, data)
+                self.links[number] = ChainLink(t, _cause(number, "message", data.content, data.cause), data)
             case records.RunRecord():
                 self.ros = data.ros or ""
             case records.BelievedRecord() if self.ros == "memory":
@@ -187,8 +183,9 @@ class Past:
                 self.agents[data.agent] = t, data.state
                 self.began.setdefault(data.agent, t)
                 if data.state == "ended":
-                    for key in [key for key in self.intentions if key[0] == data.agent]:
-                        del self.intentions[key]
+                    self.intentions = {
+                        at: each for at, each in self.intentions.items() if at[0] != data.agent
+                    }
             case records.SourceRecord():
                 self.sources[data.file] = data.text.split("\n")
             case records.ArtifactRecord(robot=str(robot)):  # the record of a disposed artifact has no robot
@@ -211,9 +208,7 @@ class Past:
             known = self.operations.get(data.id, deed)
             deed = known._replace(state=data.state, ended=t, why=data.reason or "", end=data)
         elif data.id not in self.links:
-            cause = records.CauseRecord(
-                data.id, "operation", data.operation, data.cause or 0, None, data.agent
-            )
+            cause = _cause(data.id, "operation", data.operation, data.cause, data.agent)
             cause.artifact = data.artifact
             self.links[data.id] = ChainLink(t, cause)
         self.operations[data.id] = deed
@@ -241,6 +236,12 @@ class Past:
 def of_agent(timed: TimedRecords[T], agent: str) -> TimedRecords[T]:
     """Return the records of one agent; all if *agent* is empty."""
     return [each for each in timed if agent in ("", each[1].agent)]
+
+
+def _cause(
+    number: Any, sort: str, what: str, parent: int | None, agent: str | None = None
+) -> records.CauseRecord:
+    return records.CauseRecord(number, sort, what, parent or 0, agent=agent)
 
 
 def awaited(data: records.IntentionRecord) -> str:

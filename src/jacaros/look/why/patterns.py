@@ -99,14 +99,9 @@ class QuestionPattern:
 
     def fits(self, recorded: str) -> bool:
         """Return whether a recorded trigger, goal or belief matches."""
-        sign, kind, literal = _split(recorded)
-        if (
-            kind != self.kind
-            or (self.sign and self.sign != (sign[-1:] or "+"))
-            or _name(literal) != self.name
-        ):
-            return False
-        return self._term is None or _is_instance(self._term, literal)
+        sign, kind, _ = _split(recorded)
+        has_sign = self.sign in ("", sign[-1:] or "+")
+        return has_sign and kind == self.kind and self.fits_literal(recorded)
 
     def fits_literal(self, recorded: str) -> bool:
         """Return whether the literal of a recorded trigger, goal or belief matches, whatever the signs."""
@@ -139,11 +134,6 @@ def literal_at(text: str, start: int) -> str:
         if depth == 0:
             return text[start : at + 1]
     return text[start:]
-
-
-def unsigned(text: str) -> str:
-    """Return a trigger or goal without ``+`` or ``-`` before it."""
-    return text.lstrip("+-^ ")
 
 
 def _name(literal: str) -> str:

@@ -11,26 +11,12 @@ from typing import Any, NamedTuple
 
 from jacaros.look.records import records
 from jacaros.look.records.records import Record, decoded
+from jacaros.look.why import deeds
 from jacaros.look.why.about_deeds import explain_failure, explain_outcome, explain_when, explain_why
 from jacaros.look.why.about_events import CHOSEN, explain_belief, explain_event, explain_plan, plan_about
 from jacaros.look.why.about_motion import explain_command, explain_drive, explain_stop, explain_turn
 from jacaros.look.why.about_now import explain_now
 from jacaros.look.why.chains import with_values
-from jacaros.look.why.deeds import (
-    ARRIVING,
-    ENDING,
-    FAILING,
-    MOVING,
-    RESTING,
-    STOPPING,
-    TURNING,
-    beliefs,
-    deeds_asked_for,
-    described,
-    is_named,
-    stems,
-    words_of,
-)
 from jacaros.look.why.explanation import Explanation, seconds
 from jacaros.look.why.past import OPEN, Deed, Past
 from jacaros.look.why.patterns import LITERAL, Question, QuestionPattern, literal_at, name_of
@@ -39,6 +25,7 @@ from jacaros.runtime.errors import UsageError
 from jacaros.runtime.files.texts import help_line, suggestion
 
 Answer = Callable[[Past, Question], Explanation | None]
+_Verbs = Sequence[tuple[frozenset[str], Answer]]
 
 MOST_NAMES = 12
 """Number of names of each kind that the error for an unknown question lists."""
@@ -59,31 +46,31 @@ FORMS: Mapping[str, str] = {
 """How to ask, and what is answered."""
 
 _WORD = re.compile(r"[A-Za-z]+'[a-z]+|\w+")
-_NOW = words_of("is are am")
-_WHETHER = _NOW | words_of("did does do has have had was were can could will would")
-_WHEN = words_of("when where how")
+_NOW = deeds.words_of("is are am")
+_WHETHER = _NOW | deeds.words_of("did does do has have had was were can could will would")
+_WHEN = deeds.words_of("when where how")
 _BEFORE_SUBJECT = _WHETHER | {"", "agent", "robot", "for"}
 """Words before the name of an agent, such as `did`; at the beginning, an empty one. Elsewhere, it may be that of a goal."""
-_NEGATIONS = words_of("not never no")
+_NEGATIONS = deeds.words_of("not never no")
 _FILLERS = _WHETHER | _WHEN | _NEGATIONS
-_FILLERS |= words_of(
+_FILLERS |= deeds.words_of(
     "what which who why a an the this that there then here now its it i me my you we us they their robot robots agent "
     "agents run to into in on of off from for at by with about around up and so because get got something anything someone "
     "everything need needed want wanted try tried last first again often time times all happen happens happened led make "
     "made caused changed"
 )
 """Words that say nothing about what happened."""
-_KINDS = words_of("operation goal event")
-_OUTCOMES = ENDING | FAILING | STOPPING | RESTING | _KINDS | {"plan"}
+_KINDS = deeds.words_of("operation goal event")
+_OUTCOMES = deeds.ENDING | deeds.FAILING | deeds.STOPPING | deeds.RESTING | _KINDS | {"plan"}
 """Words about what else the question names."""
-_SUBJECTS: Sequence[tuple[frozenset[str], Answer]] = (
-    (STOPPING, explain_stop),
-    (RESTING, explain_now),
-    (FAILING, explain_failure),
-    (ENDING, explain_now),
+_SUBJECTS: _Verbs = (
+    (deeds.STOPPING, explain_stop),
+    (deeds.RESTING, explain_now),
+    (deeds.FAILING, explain_failure),
+    (deeds.ENDING, explain_now),
 )
 """Verbs that need no object, and what answers them."""
-_MOTIONS: Sequence[tuple[frozenset[str], Answer]] = ((TURNING, explain_turn), (MOVING, explain_drive))
+_MOTIONS: _Verbs = ((deeds.TURNING, explain_turn), (deeds.MOVING, explain_drive))
 """Verbs that the commands to the wheels explain if the program has no name for them."""
 
 
@@ -126,7 +113,7 @@ def explain(
 def unknown_question(past: Past, asked: Question) -> UsageError:
     """Return the error for a question that is not understood. It lists what this run can be asked about."""
     names: dict[str, dict[str, None]] = {"operation": {}, "goal": {}, "event": {}, "world": {}}
-    for each in sorted(deeds_asked_for(past, asked), key=lambda deed: -deed.began):
+    for each in sorted(deeds.deeds_asked_for(past, asked), key=lambda deed: -deed.began):
         names[each.kind].setdefault(name_of(each.text) or each.text)
     known = {name for each in (FORMS, *names.values()) for name in each}
     last = asked.written.strip(" ?`'\"").split()[-1:] or [""]
@@ -160,7 +147,7 @@ class _Sentence(NamedTuple):
         heard = _WORD.findall(text)
         said = [word.lower() for word in heard]
         meant = (word for word in heard if word.lower() not in _FILLERS and "'" not in word)
-        return cls(said, said[0] if said else "", [part for word in meant for part in stems(word)])
+        return cls(said, said[0] if said else "", [part for word in meant for part in deeds.stems(word)])
 
     @property
     def is_negated(self) -> bool:
@@ -176,12 +163,13 @@ def explain_sentence(past: Past, asked: Question) -> Explanation | None:
     if any(name_of(data.belief) == asked.about for _, data in past.beliefs):
         return explain_belief(past, asked)
     for verbs, answer in _SUBJECTS:
-        if not verbs.isdisjoint(sentence.words) and sentence.is_only(verbs | MOVING):
+        if not verbs.isdisjoint(sentence.words) and sentence.is_only(verbs | deeds.MOVING):
             return answer(past, asked)
+    motions = (answer for verbs, answer in _MOTIONS if sentence.is_only(verbs - deeds.ARRIVING))
     return (
         (_of_beliefs(past, asked, sentence) if sentence.first in _NOW else None)
         or _of_deeds(past, asked, sentence)
-        or next((told(past, asked) for verbs, told in _MOTIONS if sentence.is_only(verbs - ARRIVING)), None)
+        or next((answer(past, asked) for answer in motions), None)
         or _of_beliefs(past, asked, sentence)
         or _of_nothing(past, asked, sentence)
     )
@@ -190,21 +178,21 @@ def explain_sentence(past: Past, asked: Question) -> Explanation | None:
 def _of_deeds(past: Past, asked: Question, sentence: _Sentence) -> Explanation | None:
     """Explain the deeds that a sentence describes, or how they ended; None if there are none."""
     kinds = _KINDS.intersection(sentence.said)
-    deeds = [each for each in deeds_asked_for(past, asked) if not kinds or each.kind in kinds]
+    all_found = [each for each in deeds.deeds_asked_for(past, asked) if not kinds or each.kind in kinds]
     words = [word for word in sentence.words if word not in kinds]
     objects = [word for word in words if word not in _OUTCOMES]
     literal, ends = LITERAL.search(asked.about), False
     if literal is not None:
         pattern = QuestionPattern(literal_at(asked.about, literal.start()))
-        found = [each for each in deeds if pattern.fits_literal(each.text)]
+        found = [each for each in all_found if pattern.fits_literal(each.text)]
     elif kinds and not words:
-        found = deeds[-1:]
+        found = all_found[-1:]
     else:
-        found = described(past, words, deeds)
+        found = deeds.described(past, words, all_found)
         if not found and objects:
-            found, ends = described(past, objects, deeds), True
-        if ARRIVING.issuperset(objects):  # without a destination, no drive is meant
-            found = [each for each in found if {*words} <= {*stems(each.text)}]
+            found, ends = deeds.described(past, objects, all_found), True
+        if deeds.ARRIVING.issuperset(objects):  # without a destination, no drive is meant
+            found = [each for each in found if {*words} <= {*deeds.stems(each.text)}]
     if not found:
         return None
     if sentence.first in _WHEN:
@@ -213,7 +201,7 @@ def _of_deeds(past: Past, asked: Question, sentence: _Sentence) -> Explanation |
     if sentence.first in _WHETHER or ends or sentence.is_negated:
         # Whether it did `dock` is not answered by yes or no if all that is known is the end of `find_dock`; and whether it
         # is docked, not by the end of anything.
-        named = literal is not None or is_named(last, words)
+        named = literal is not None or deeds.is_named(last, words)
         verdict = sentence.first in _WHETHER and named and (sentence.first not in _NOW or last.state in OPEN)
         ask = sentence.first if verdict else "why not" if sentence.is_negated else "why"
         return explain_outcome(past, asked, found, ask)
@@ -224,17 +212,15 @@ def _of_deeds(past: Past, asked: Question, sentence: _Sentence) -> Explanation |
 
 def _of_beliefs(past: Past, asked: Question, sentence: _Sentence) -> Explanation | None:
     """Explain the beliefs that a sentence describes, or those from which a rule concludes it; None if there are none."""
-    held = beliefs(past, asked.agent)
-    if (
-        sentence.first in _WHETHER
-    ):  # that an agent knows a place for docking says nothing about whether it is docked
-        held = [each for each in held if "source(percept)" in each.text or is_named(each, sentence.words)]
-    found = described(past, sentence.words, held)
-    if found and sentence.first not in _WHEN and MOVING.isdisjoint(sentence.words):
+    held, words = deeds.beliefs(past, asked.agent), sentence.words
+    if sentence.first in _WHETHER:  # whether it is docked does not follow from where it believes a dock to be
+        held = [each for each in held if "source(percept)" in each.text or deeds.is_named(each, words)]
+    found = deeds.described(past, words, held)
+    if found and sentence.first not in _WHEN and deeds.MOVING.isdisjoint(words):
         return (explain_outcome if sentence.first in _WHETHER else explain_why)(past, asked, found)
     for agent, rules in past.rules.items() if sentence.first in _NOW else ():
         heads = (rule.partition(":-")[0].strip() for rule in rules)
-        name = next((each for each in heads if {*stems(name_of(each))} == {*sentence.words}), None)
+        name = next((each for each in heads if {*deeds.stems(name_of(each))} == {*words}), None)
         if name is not None and asked.agent in ("", agent):
             answer = f"a rule of {agent} decides {with_values(past, agent, name, past.end)}"
             return Explanation(asked.written, answer, past.end)
@@ -243,19 +229,17 @@ def _of_beliefs(past: Past, asked: Question, sentence: _Sentence) -> Explanation
 
 def _of_nothing(past: Past, asked: Question, sentence: _Sentence) -> Explanation | None:
     """Explain what did not happen: a plan, or an event of the world."""
+    denied = "no: " if sentence.first in _WHETHER else ""
     plan = plan_about(past, sentence.words, asked.agent) if sentence.first not in _NOW else None
     if plan is not None:
         explanation = explain_plan(past, replace(asked, about=plan))
-        denied = "no: " if sentence.first in _WHETHER else "it did not: "
-        done = CHOSEN in explanation.answer
-        return explanation if done else replace(explanation, answer=f"{denied}{explanation.answer}")
-    known = described(past, sentence.words, (Deed("world", each, 0.0) for each in FIELDS))
-    if sentence.first not in _WHETHER | _WHEN or not known or sentence.is_only(MOVING):
+        said = "" if CHOSEN in explanation.answer else denied or "it did not: "
+        return replace(explanation, answer=f"{said}{explanation.answer}")
+    known = deeds.described(past, sentence.words, (Deed("world", each, 0.0) for each in FIELDS))
+    if sentence.first not in _WHETHER | _WHEN or not known or sentence.is_only(deeds.MOVING):
         return None
-    denied = "no: " if sentence.first in _WHETHER else ""
-    return Explanation(
-        asked.written, f"{denied}`{known[-1].text}` was not recorded until {seconds(past.end)}"
-    )
+    answer = f"{denied}`{known[-1].text}` was not recorded until {seconds(past.end)}"
+    return Explanation(asked.written, answer)
 
 
 _ANSWERS: Mapping[str, Answer] = {
@@ -298,16 +282,17 @@ class Announcer:
                 self._tell(explain_event(past, Question(asked, about=asked)).text())
         elif event in ("deliberation", "belief", "goal"):
             record = decoded(event, data)
-            happened = _trigger_of(record)
             for asked, pattern in self._wanted.items():
-                if happened and pattern.fits(happened):
-                    past = Past.of(self._so_far())
-                    if isinstance(record, records.BeliefRecord) and _has_plan(past, record):
-                        continue  # it is explained when it is handled
-                    self._unmet.pop(asked, None)
-                    question = Question(asked, about=asked, agent=record.agent)
-                    explain_it = explain_failure if isinstance(record, records.GoalRecord) else explain_event
-                    self._tell(explain_it(past, question).text())
+                if pattern.fits(_trigger_of(record)):
+                    self._explain(Question(asked, about=asked, agent=data["agent"]), record)
+
+    def _explain(self, asked: Question, record: Any) -> None:
+        past = Past.of(self._so_far())
+        if isinstance(record, records.BeliefRecord) and _has_plan(past, record):
+            return  # the event is explained when it is handled
+        self._unmet.pop(asked.about, None)
+        explained = explain_failure if isinstance(record, records.GoalRecord) else explain_event
+        self._tell(explained(past, asked).text())
 
 
 def _trigger_of(record: Any) -> str:
@@ -317,13 +302,12 @@ def _trigger_of(record: Any) -> str:
             return record.trigger
         case records.BeliefRecord():
             return f"{record.op}{record.belief}"
-        case records.GoalRecord(state="failed"):
-            return record.goal
-    return ""
+    return record.goal if record.state == "failed" else ""
 
 
 def _has_plan(past: Past, change: records.BeliefRecord) -> bool:
     """Return whether a plan may handle a belief change."""
-    name = name_of(change.belief)
-    triggers = (plan.trigger for _, plan in past.plans(change.agent))
-    return any(each.startswith(change.op) and name_of(each) in (name, "") for each in triggers)
+    name, plans = name_of(change.belief), past.plans(change.agent)
+    return any(
+        each.trigger.startswith(change.op) and name_of(each.trigger) in (name, "") for _, each in plans
+    )
