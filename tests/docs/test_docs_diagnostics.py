@@ -14,8 +14,8 @@ PAGE = ROOT / "docs" / "reference" / "diagnostics.md"
 EXAMPLES = [block for block in blocks(PAGE) if block.purpose.startswith(("wrong ", "right "))]
 OF_FILES = {
     *("not-imported", "too-many", "no-effect", "plan-too-large", "unknown-artifact-type"),
-    *("unknown-message-type", "unknown-operation", "unknown-resource", "unreadable-file", "wrong-mapping"),
-    *("wrong-world", "wrong-project"),
+    *("unknown-message-type", "unknown-operation", "unknown-property", "unknown-resource", "unreadable-file"),
+    *("wrong-mapping", "wrong-world", "wrong-project"),
 }
 TOO_LONG = {"nested-too-deeply"}
 LEVELS = {"Errors": "error", "Warnings": "warning", "Notes": "note"}

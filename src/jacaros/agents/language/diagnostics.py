@@ -176,7 +176,7 @@ _CODES: Final[dict[Severity, str]] = {
         misspelt-belief no-effect ordered-atom organisation-library plan-never-selected
         plan-too-large singleton-variable too-many unknown-artifact-type unknown-code unknown-goal
         unknown-internal-action unknown-library unknown-message-type unknown-operation
-        unknown-performative unknown-resource wrong-arguments wrong-needs wrong-supervision
+        unknown-performative unknown-property unknown-resource wrong-arguments wrong-needs wrong-supervision
         wrong-urgency
     """,
     "note": """

@@ -33,7 +33,7 @@ from jacaros.robots.mapping.properties import (
 )
 from jacaros.robots.streams import OPERATORS, Spec
 from jacaros.runtime.files.entries import FieldSpec, declared_entries, values
-from jacaros.runtime.files.texts import is_file, suggestion
+from jacaros.runtime.files.texts import close_matches, did_you_mean, is_file, suggestion
 from jacaros.runtime.files.yaml import Problem, YamlFileError, YamlNode, read_document, read_text, top_keys
 
 SHIPPED = Path(__file__).parent.parent / "mappings"
@@ -364,6 +364,24 @@ def _expectations(part: ArtifactPart) -> Iterator[Problem]:
             if topic.fields is not None and count != len(expected.values):
                 text = f"`{topic.name}` has {count} value{'s' * (count != 1)}, not {len(expected.values)}"
                 yield place.problem(text, "write a pattern for each value, _ for any")
+
+
+def misspelt_expectations(mapping: MappingFile) -> Iterator[Problem]:
+    """Yield expected properties and signals that are similar to one of the file, and are in no file of the package."""
+    own = _perceived(mapping)
+    for operation in (each for part in mapping.artifacts.values() for each in part.operations):
+        for place, expected in (*operation.expect, *operation.meanwhile):
+            near = close_matches(expected.name, own) if expected.name not in own else []
+            others = (load_mapping(SHIPPED / name) for name in (shipped_mappings() if near else ()))
+            if near and not any(expected.name in _perceived(each) for each in others):
+                kind = "signal" if expected.signal else "property"
+                yield place.problem(
+                    f"no artifact of this file has the {kind} `{expected.name}`", did_you_mean(near)
+                )
+
+
+def _perceived(mapping: MappingFile) -> set[str]:
+    return {name for part in mapping.artifacts.values() for _, name, _ in _observable(part)}
 
 
 def _references(part: ArtifactPart) -> Iterator[Problem]:

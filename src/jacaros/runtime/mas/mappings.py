@@ -6,7 +6,12 @@ from pathlib import Path
 
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span
 from jacaros.robots.mapping.checking import UNCERTAIN, type_problems
-from jacaros.robots.mapping.file import find_mapping, read_with_problems, shipped_mappings
+from jacaros.robots.mapping.file import (
+    find_mapping,
+    misspelt_expectations,
+    read_with_problems,
+    shipped_mappings,
+)
 from jacaros.robots.mapping.interfaces import stored_interfaces
 from jacaros.runtime.files.texts import suggestion
 from jacaros.runtime.files.yaml import Problem
@@ -18,6 +23,7 @@ MAIN = "main"
 WRONG = "wrong-mapping"
 WRONG_WORLD = "wrong-world"
 UNKNOWN_TYPE = "unknown-message-type"
+UNKNOWN_PROPERTY = "unknown-property"
 
 
 def read_mapping_file(
@@ -73,7 +79,11 @@ def check_mapping_file(path: Path) -> list[Diagnostic]:
         for each in type_problems(part, stored_interfaces(part.interfaces))
     ]
     problems += [each for each in uncertain if each.line not in wrong]
-    return diagnostics_of(mapping.file, mapping.text, problems)
+    # Another artifact of the robot may have the property; an alias repeats a problem.
+    misspelt = [each for each in dict.fromkeys(misspelt_expectations(mapping)) if each.line not in wrong]
+    warnings = diagnostics_of(mapping.file, mapping.text, misspelt, UNKNOWN_PROPERTY)
+    errors = diagnostics_of(mapping.file, mapping.text, problems)
+    return errors + [replace(each, severity="warning") for each in warnings]
 
 
 def is_wrong(name: str, folders: Sequence[Path]) -> bool:

@@ -245,6 +245,31 @@ def test_mistakes_in_a_mapping_file_are_reported_once_before_those_of_the_progra
     assert "did you mean `nav2.yaml`?" in output
 
 
+@pytest.mark.parametrize(
+    ("expect", "problem", "help"),
+    [
+        ("expect: {dokced: [true]}", "no artifact of this file has the property `dokced`", "`docked`"),
+        ("meanwhile: {no: {bumb: [_]}}", "no artifact of this file has the signal `bumb`", "`bump`"),
+        ("expect: {docked: [true]}", "", ""),
+        ("expect: {battery: [_, charging]}", "", ""),  # similar to `batteries`, but of turtlebot4.yaml
+        ("expect: {gripper: [open]}", "", ""),  # possibly of another artifact
+    ],
+)
+def test_a_misspelt_expectation_is_a_warning(
+    folder: Path, outcome: Outcome, expect: str, problem: str, help: str
+) -> None:
+    (folder / "own.yaml").write_text(
+        "properties: {docked: {topic: d, type: std_msgs/msg/Bool, fields: [data]}, batteries: b}\n"
+        "signals: {bump: c}\n"
+        f"operations:\n  go: {{service: s, {expect}}}\n  back: {{service: s}}\n",
+        encoding="utf-8",
+    )
+    assert found(outcome, "own.yaml") == ([("own.yaml", 4, "unknown-property")] if problem else [])
+    code, output, _ = outcome("own.yaml")
+    assert code == 0
+    assert not problem or (f"warning: {problem}" in output and f"did you mean {help}?" in output)
+
+
 def test_a_world_file_is_checked_as_a_world(folder: Path, outcome: Outcome) -> None:
     head = "size: [4, 4]\nborder: walls\nrobots:\n"
     (folder / "flat.yaml").write_text(f"{head}  - {{name: r}}\n", encoding="utf-8")
