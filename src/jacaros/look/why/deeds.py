@@ -151,7 +151,7 @@ _SYNONYMS = (
     stems_of("pick grasp grab take"),
 )
 """Words of people for names of programs. Everything else must be named as the program does."""
-EXACT, OF_PLACE, SIMILAR = 3, 2, 1
+IN_NAME, IN_ARGUMENTS, OF_PLACE, SIMILAR = 4, 3, 2, 1
 _SMALL = frozenset(("to", "into", "in", "at", "of", "the", "and", "operation"))
 
 
@@ -174,7 +174,7 @@ def closeness(
         similar = next((group & own for group in _SYNONYMS if word in group), set[str]())
         if word in known:
             covered.add(word)
-            total += EXACT
+            total += IN_NAME if word in own else IN_ARGUMENTS
         elif word in place:
             total += OF_PLACE
         elif similar:

@@ -108,6 +108,15 @@ def test_the_end_of_something_else_is_no_verdict() -> None:
     assert answer == "`!find_dock` of guard was achieved at 20.000 s"
 
 
+def test_a_name_fits_better_than_an_argument() -> None:
+    begun = [
+        goal(float(t), text, "pursued", id=t)
+        for t, text in enumerate(("!wait_until_charged", "!attempt(wait_until_charged,1)"))
+    ]
+    answer = explain([*CHARGING[:3], *begun], "is it charging?").answer
+    assert answer == "`!wait_until_charged` of guard has not ended"
+
+
 def test_of_several_robots_the_one_asked_about_is_meant() -> None:
     other = operation(20.0, 90, "rotate(-5)", "began", 0, agent="scout")
     records = [*CHARGING, (19.0, "agent", {"agent": "scout", "state": "began"}), other]
