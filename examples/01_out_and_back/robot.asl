@@ -21,7 +21,7 @@
      X * X + Y * Y < 0.05 * 0.05;  // a condition is a step, too: if it does not hold, the goal fails
      .stopMAS.                     // stop the whole system
 
-// The wheels drop: somebody lifts the robot, so nothing is left of what it has measured.
+// The wheels drop: the robot is lifted, so nothing is left of what it has measured.
 +hazard(wheel_drop, _) <- .fail_goal(start).
 
 // The goal has failed: the exit status says so.

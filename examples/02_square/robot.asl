@@ -17,7 +17,7 @@
      getCurrentPose(X, Y, _); X * X + Y * Y < 0.05 * 0.05;  // back at the start: otherwise the goal fails
      .stopMAS.
 
-// Somebody lifts the robot.
+// The robot is lifted.
 +hazard(wheel_drop, _) <- .fail_goal(start).
 
 -!start <- .print("I am not back at the start, I need help"); .stopMAS(0, 1).

@@ -61,7 +61,7 @@ lowest(100).  // lowest battery level on arrival in the dock, in percent
 +!recharge
   <- !charge_first[achieves(battery(Full) & Full > 95)].
 
-// The robot could not charge, and nobody has helped.
+// The robot could not charge, and no help has come.
 -!recharge[error_msg(Text)]
   <- .print("I need help: ", Text);
      .stopMAS(0, 1).  // the exit status reports the failure

@@ -96,7 +96,7 @@ recharges(0).
 
 +!drive_out_of_dock.
 
-// Failure: the robot could not charge, or not get to a room, and nobody has helped.
+// Failure: the robot could not charge, or not get to a room, and no help has come.
 -!recharge[error_msg(Text)]
   <- !give_up(Text).
 

@@ -125,7 +125,7 @@ status(0) :- not in_need.
 
 { include("$jacaros/navigation.asl") }
 
-/* A robot that cannot charge, and that nobody has helped: the others keep its places */
+/* A robot that cannot charge, and that gets no help: the others keep its places */
 
 -!keep_charged[error_msg(Text)]
   <- .print("I need help: ", Text);

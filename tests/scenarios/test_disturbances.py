@@ -161,7 +161,7 @@ def test_further_runs_are_counted_by_kind_and_by_half() -> None:
 
 
 @pytest.mark.slow
-def test_a_missed_grasp_is_no_fetched_tea() -> None:
+def test_a_missed_grasp_fetches_nothing() -> None:
     found = [run_one(Job("fetch", AGENTS, seed)) for seed in (FURTHER + 2, FURTHER + 5)]
     assert {each.kind for each in found} == {"missed_grasp"}
     assert all(each.end in (DONE, TOLD) for each in found)

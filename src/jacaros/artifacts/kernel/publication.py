@@ -218,7 +218,7 @@ class Publication:
             self._show(observer, removed=self.committed())
 
     def follow(self, observer: Observer, on: bool = True) -> None:
-        """Let *observer*, which is no agent's, receive what is published from now on, or no longer."""
+        """Let *observer*, which does not belong to an agent, receive what is published from now on, or no longer."""
         if on:
             self._observers[observer] = None
         else:

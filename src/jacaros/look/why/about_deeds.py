@@ -90,8 +90,11 @@ def explain_outcome(past: Past, asked: Question, found: Sequence[Deed], ask: str
     misplaced = (each for each in reversed(past.misplaced) if each[0] <= last.at and each[1] in robots)
     t, robot, where = next(misplaced, (0.0, "", ""))
     is_wrong = holds and last.kind in ("goal", "operation") and bool(where)
+    ends_with_run, ending = _ends_with_run(past, last), ending_step(past)
     said = ""
-    if ask != "why" and last.state != "replaced":
+    if ask == "did" and ends_with_run and past.exit_code == 0 and _is_step_of(ending, last):
+        said = "it ended the run with exit code 0: "  # its program calls that done
+    elif ask != "why" and last.state != "replaced":
         yes = "it believes so: " if is_wrong else "it did: " if ask == "why not" else "yes: "
         no = "" if ask == "why not" else "not yet: " if lasts else "no: "
         said = yes if holds else no
@@ -105,7 +108,6 @@ def explain_outcome(past: Past, asked: Question, found: Sequence[Deed], ask: str
         facts.append(Fact("note", far, t))
     for robot in robots if last.ended is not None else ():
         facts += world_facts(past, last.at, robot)
-    ends_with_run, ending = _ends_with_run(past, last), ending_step(past)
     if ends_with_run and ending is not None:
         facts.append(ending)
     elif lasts or ends_with_run:
@@ -124,6 +126,10 @@ def _ends_with_run(past: Past, deed: Deed) -> bool:
     """Return whether the end of the run ended a deed."""
     ended = deed.ended is not None and past.exit_code is not None and past.end - deed.ended <= AT_ONCE
     return ended and (deed.state == "dropped" or deed.why == "cancelled")
+
+
+def _is_step_of(step: Fact | None, deed: Deed) -> bool:
+    return step is not None and step.agent == deed.agent and step.text.endswith(f"`{shown(deed.text)}`")
 
 
 def _end(past: Past, deed: Deed) -> str:

@@ -185,7 +185,7 @@ def _is_at(plan: records.PlanRecord, about: str) -> bool:
 
 
 def plan_about(past: Past, words: list[str], agent: str) -> str | None:
-    """Return the place of the plan that words describe, by its trigger, label, context and steps; None if there is none. A
+    """Return the place of the plan that words describe, by its trigger, label, context and steps; None if no plan fits. A
     plan of a library must have its name from them.
     """
     found = []

@@ -62,7 +62,7 @@ def beliefs(past: Past, agent: str) -> Iterable[Deed]:
 
 
 def described(past: Past, words: list[str], deeds: Iterable[Deed]) -> list[Deed]:
-    """Return the deeds that words describe best, of the same name, the oldest first; empty if there are none."""
+    """Return the deeds that words describe best, of the same name, the oldest first; empty if nothing fits."""
     closeness_of = cache(partial(_closeness, words, places_of(past)))
 
     def fit(deed: Deed) -> tuple[int, bool, int, int]:

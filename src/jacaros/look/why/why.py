@@ -176,7 +176,7 @@ def explain_sentence(past: Past, asked: Question) -> Explanation | None:
 
 
 def _of_deeds(past: Past, asked: Question, sentence: _Sentence) -> Explanation | None:
-    """Explain the deeds that a sentence describes, or how they ended; None if there are none."""
+    """Explain the deeds that a sentence describes, or how they ended; None if nothing fits."""
     kinds = _KINDS.intersection(sentence.said)
     all_found = [each for each in deeds.deeds_asked_for(past, asked) if not kinds or each.kind in kinds]
     words = [word for word in sentence.words if word not in kinds]
@@ -211,7 +211,7 @@ def _of_deeds(past: Past, asked: Question, sentence: _Sentence) -> Explanation |
 
 
 def _of_beliefs(past: Past, asked: Question, sentence: _Sentence) -> Explanation | None:
-    """Explain the beliefs that a sentence describes, or those from which a rule concludes it; None if there are none."""
+    """Explain the beliefs that a sentence describes, or those from which a rule concludes it; None if nothing fits."""
     held, words = deeds.beliefs(past, asked.agent), sentence.words
     if sentence.first in _WHETHER:  # whether it is docked does not follow from where it believes a dock to be
         held = [each for each in held if "source(percept)" in each.text or deeds.is_named(each, words)]

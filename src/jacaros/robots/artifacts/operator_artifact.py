@@ -116,7 +116,7 @@ class Operator(RosArtifact):
 
     @operation
     async def ask(self, question: str, options: list[object], answer: Out) -> None:
-        """Ask a person, and give the answer: one of *options*, or any text if there are none.
+        """Ask a person, and give the answer: one of *options*, or any text if the list is empty.
 
         Fails with ``no_answer(Seconds)`` after `timeout` without an answer and a `default`, and with
         ``invalid_option(Option)`` if the text of an option is empty or that of another one. The question is withdrawn

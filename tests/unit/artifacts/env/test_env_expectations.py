@@ -184,7 +184,7 @@ async def test_what_must_hold_meanwhile_stops_the_operation(stage, act, argument
     assert call.ok if reason is None else text(call.reason) == reason
 
 
-async def test_a_violation_shorter_than_within_or_in_a_pause_is_none(stage):
+async def test_a_violation_shorter_than_within_or_in_a_pause_does_not_count(stage):
     motion, base = await two(stage)
     stage.call(base, "report", "docked", True)
     call = stage.call(motion, "charge")
@@ -236,7 +236,7 @@ async def test_a_condition_that_is_violated_at_the_start_fails_the_operation(sta
     assert stage.environment.artifact(motion).events == []
 
 
-async def test_expectations_are_no_focus_and_leave_nothing_behind(stage):
+async def test_expectations_do_not_focus_and_leave_nothing_behind(stage):
     motion, base = await two(stage)
     call = stage.call(motion, "charge")
     await stage.clock.sleep(1)

@@ -143,7 +143,7 @@ async def test_a_bump_on_a_planned_way_cancels_the_goal(lab: Lab) -> None:
 
 
 @played(in_lab, world=None)
-async def test_a_robot_without_such_a_topic_keeps_its_operation_and_is_told_once(lab: Lab) -> None:
+async def test_a_robot_without_such_a_topic_keeps_its_operation_and_warns_once(lab: Lab) -> None:
     base = await shipped(lab, "turtlebot4.yaml")
     offer(lab, "dock", "irobot_create_msgs/action/Dock", 1, is_docked=True)
     await docked(lab, True)

@@ -143,7 +143,7 @@ def test_a_person_stands_in_the_way_of_the_robot_wherever_it_is() -> None:
     assert world.people == {}
 
 
-def test_nobody_stands_in_a_wall() -> None:
+def test_people_do_not_stand_in_walls() -> None:
     world = world_with("{kind: person_in_the_way}")
     world.robot().x = 2.0
     assert "a wall is in the way" in str(world.faults.begin("f"))

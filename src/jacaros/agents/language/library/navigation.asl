@@ -101,7 +101,7 @@ patience(300000) :- not slowest_percent(_).
 
 +!back_out.
 
-// It is not in a dock after all.
+// It is not in a dock.
 -!back_out.
 
 // No path was found, or it took too long: forget obstacles that may have moved, and give them time to move.
@@ -227,7 +227,7 @@ patience(300000) :- not slowest_percent(_).
 +!advice(Reason, Answer)
   <- !help(Reason, Answer).
 
-// Nobody answers.
+// No answer comes.
 -!advice(_, stop).
 
 +!charge_again
@@ -318,7 +318,7 @@ patience(300000) :- not slowest_percent(_).
 
 /* Doubt about one's place: lost, of the mappings of Nav2 and move_base, or the program's own */
 
-// The robot stops what it does, searches, and goes on.  More urgent than all that drives: other plans that need the wheels wait.
+// The robot stops what it does, searches, and continues.  More urgent than all that drives: other plans that need the wheels wait.
 @navigation__lost[urgency(20), needs(wheels)]
 +lost
   <- !find_place;
@@ -379,7 +379,7 @@ patience(300000) :- not slowest_percent(_).
 
 +!return_to_work.
 
-// Somebody lifts the robot: it stands until its localisation has had the time to doubt.
+// The robot is lifted: it stands until its localisation has had the time to doubt.
 +hazard(wheel_drop, _) <- +lifted.
 +wheel_drop(_, dropped) <- +lifted.
 

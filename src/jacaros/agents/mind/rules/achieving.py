@@ -97,7 +97,7 @@ def _condition(holder: Frame, frame: Frame) -> tuple[Term, float]:
 
 
 def both(given: Iterator[list[Term]] | list[list[Term]]) -> tuple[Term, float]:
-    """Join the arguments of annotations ``achieves(Condition, Ms)``; an invalid time is none."""
+    """Join the arguments of annotations ``achieves(Condition, Ms)``; an invalid time does not count."""
     condition, seconds = None, 0.0
     for wanted, *times in given:
         condition = wanted if condition is None else (_AND, condition, wanted)
@@ -114,7 +114,7 @@ def _settle(
     waiting.attach(frame, frame[STEP])
     waiting.pending.append(watch(agent, condition, _settled, waiting, holder))
     waiting.pending.append(set_alarm(agent, seconds, _unsettled, waiting))
-    if agent.features.meta and frame[STEP] is None:  # otherwise whoever has made the step reports it
+    if agent.features.meta and frame[STEP] is None:  # otherwise the rule that made the step reports it
         meta_events.top_goal_state(agent, intention, "waiting", waiting.reason)
 
 

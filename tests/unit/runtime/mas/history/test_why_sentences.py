@@ -100,7 +100,7 @@ def test_a_sentence_is_about_what_its_words_name(question: str, answer: str, det
     assert details in found.text()
 
 
-def test_the_end_of_something_else_is_no_verdict() -> None:
+def test_the_end_of_something_else_gives_no_verdict() -> None:
     begun = goal(19.0, "!find_dock", "pursued", id=9)
     answer = explain(
         [*CHARGING[:8], begun, goal(20.0, "!find_dock", "achieved", id=9)], "did it dock?"
@@ -131,7 +131,7 @@ def test_what_did_not_happen_is_explained_by_its_plan() -> None:
     )
 
 
-def test_a_belief_that_names_something_else_is_no_verdict() -> None:
+def test_a_belief_that_names_something_else_gives_no_verdict() -> None:
     known = [belief(0.0, "place(dock,1,1,0)"), belief(0.0, "recharges(1)")]
     begun = [*RECORDS[:3], program(0.0, [], "help_fact(docked(D)) :- docked(D)."), *known]
     for question in ("is it docked?", "did it dock?", "is it charging?"):
