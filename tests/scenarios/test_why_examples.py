@@ -35,6 +35,7 @@ def recordings(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[Recor
         ("01", "why did it turn?", ["robot started `rotate(180)`", "for `!start`"]),
         ("01", "why is it standing still?", ["the run ended", "because robot ran `.stopMAS` for `!start`"]),
         ("01", "why did it fail?", ["nothing failed"]),
+        ("01", "did it achieve start?", ["it ended the run with exit code 0"]),
         ("04", "why did it go to the dock?", ["`!go_to(dock)`", 'of `+diagnostics("Low Battery")`', "/battery_state"]),
         ("04", "why did it recharge?", ["echarge` at ", 'because of `+diagnostics("Low Battery")`', "with next("]),
         ("04", "why did it turn?", ["angular.z=", "for `driveTo("]),
@@ -44,7 +45,6 @@ def recordings(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[Recor
         ("05", "did it recharge?", ["yes: `", "echarge` of robot was "]),
         ("05", "why did it clean the kitchen?", ["`!clean_room(2,kitchen)`", "for `!clean_house`"]),
         ("05", "why did the run end?", ["`.stopMAS` for `!clean_house`", "with rounds(4)"]),
-        ("11", "why is robot_1 waiting?", ["robot_1 waited for the resource passage"]),
     ],
 )  # fmt: skip
 def test_an_answer_says_what_happened_and_why(
