@@ -37,10 +37,6 @@ lowest(100).  // lowest battery level on arrival in the dock, in percent
      -+next(Corner mod 4 + 1);
      !end_of_shift.
 
-// A corner that cannot be reached is left out, and its turn comes again.
-+unreachable(Corner, Reason)
-  <- .print("I need help, or come back later: corner ", Corner, " is out of reach, ", Reason).
-
 +!end_of_shift : recharges(N) & shift(N)
   <- !report;
      .stopMAS.

@@ -76,7 +76,7 @@ def test_the_agent_leaves_out_a_corner_when_something_stands_in_its_way(tmp_path
     wall = "walls:\n  - box: {from: [1, -0.1], to: [1.1, 0.1]}\n"
     world = world_with(tmp_path, EXAMPLES / "04_patrol/patrol.yaml", "walls:\n", wall)
     lines = run_project(EXAMPLES / PROJECT, world=world, seconds=60).lines
-    assert lines[0].startswith("[robot] I need help, or come back later: corner 1 is out of reach, blocked(")
+    assert lines[0].startswith("[robot] I need help, or come back later: place 1 is out of reach, blocked(")
     assert lines[1].endswith("corner 2")
 
 

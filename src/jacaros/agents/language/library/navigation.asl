@@ -159,10 +159,11 @@ patience(300000) :- not slowest_percent(_).
 -!reach(Place, false)[error(Error)]
   <- !leave_out(Place, Error).
 
-// Wait for a moment: there may be no other place to visit.
+// Say so, and wait for a moment: there may be no other place to visit.
 +!leave_out(Place, Reason)
   <- .abolish(unreachable(Place, _));
      +unreachable(Place, Reason);
+     .print("I need help, or come back later: place ", Place, " is out of reach, ", Reason);
      .wait(1000).
 
 +!arrived(_).
