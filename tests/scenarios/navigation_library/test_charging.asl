@@ -302,3 +302,12 @@ place(b, 2, 0, 0).
      .wait(trouble(no_current), 30000);
      !assert_did(dock, 3);
      !assert_not_did(undock).
+
+@does_not_try_again_with_an_empty_battery[test]
++!test_empty_battery
+  <- !fakes;
+     +docked(false);
+     +battery(0, discharging);
+     !!mind;
+     .wait(trouble(no_current), 30000);
+     !assert_did(dock, 1).

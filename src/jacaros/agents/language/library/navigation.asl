@@ -64,18 +64,19 @@ patience(300000) :- not slowest_percent(_).
   <- .fail(error(Error), error_msg(Text), env_failure_reason(canceled)).
 
 // The dock gives no current: dock anew, but do not try until the battery is empty.
--!attempt(wait_until_charged, Number) : Number < 3
-  <- !back_out;
+-!attempt(wait_until_charged, Number) : Number < 3 & not percent_left(0)
+  <- .print("charging failed: no current; I dock again");
+     !back_out;
      !into_dock;
      !attempt(wait_until_charged, Number + 1).
 
 // The step failed: recover from the reason, and retry.
--!attempt(Step, Number)[env_failure_reason(Reason)] : Step \== wait_until_charged & attempts_allowed(Most) & Number < Most
+-!attempt(Step, Number)[env_failure_reason(Reason)] : Step \== wait_until_charged & attempts_allowed(Most) & Number < Most & not percent_left(0)
   <- !recover(Reason);
      !attempt(Step, Number + 1).
 
 // A program's own step may fail without such a reason: recover from the kind of error instead.
--!attempt(Step, Number)[error(Error)] : Step \== wait_until_charged & attempts_allowed(Most) & Number < Most
+-!attempt(Step, Number)[error(Error)] : Step \== wait_until_charged & attempts_allowed(Most) & Number < Most & not percent_left(0)
   <- !recover(Error);
      !attempt(Step, Number + 1).
 
