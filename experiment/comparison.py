@@ -74,9 +74,9 @@ def passed(outcomes: Iterable[Outcome]) -> int:
 
 
 def ended_before_its_fault(outcome: Outcome) -> bool:
-    """Whether the program had ended when its first disturbance began."""
+    """Whether the program had ended when its first disturbance began, without a word about it."""
     begins = re.findall(r"\bat: ([\d.]+)", faults_for(outcome.job.scenario, outcome.job.seed))
-    return outcome.seconds <= min(map(float, begins))
+    return outcome.silence is None and outcome.seconds <= min(map(float, begins))
 
 
 def fisher(passed: int, runs: int, others_passed: int, others_runs: int) -> float:
