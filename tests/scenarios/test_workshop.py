@@ -131,7 +131,7 @@ def test_a_door_that_stays_closed_is_reported(tmp_path: Path) -> None:
     ("setting", "old", "new", "complaint"),
     [
         ("3_search", "attempts(15).", "attempts(1).", "the flour is not in the counter"),
-        ("4_battery", "low_at(40).", "low_at(0).", "the battery was empty"),
+        ("4_battery", "low_at(40).", "low_at(0).", "0 recharges, not 1"),
     ],
 )
 def test_the_failures_are_such_that_care_is_needed(

@@ -106,7 +106,7 @@ def test_recorded_values_are_limited(tmp_path: Path) -> None:
     program = f'!s. +!s <- makeArtifact(lamp, "Lamp", [], L); say("{"x" * 5000}").'
     found = happened(tmp_path, program, 1, {"artifacts.py": LAMPS})
     [said] = of(found, "property", name="said")
-    assert len(said["values"][0]) == 200
+    assert len(said["values"][0]) == 1000
     assert all(len(each["operation"]) <= 200 for each in of(found, "operation"))
 
 
