@@ -9,13 +9,12 @@
 // A plan: to achieve the goal `start`, run these steps in order.
 +!start
   <- !use_artifact("wheels", "ArtCmdVel", [frame(map)]);  // an artifact is something that the agent uses
-     for (.member(Leg, [out, back])) {
-        .print("driving ", Leg);
-        move(25);     // drive ahead for 2.6 seconds: 26 commands at 10 Hz
-        rotate(180);  // degrees, to the left; ends when odometry has measured them
-     };
+     // move(25) drives ahead for 2.6 seconds, with 26 commands at 10 Hz; rotate turns to the left, by degrees, and
+     // ends when odometry has measured them.
+     for (.member(Leg, [out, back])) { .print("driving ", Leg); move(25); rotate(180) };
      // Wheels slip, so look where that has led: capitalised names are variables, which get their values here.
-     getCurrentPose(Ahead, _, _); moveForward(-Ahead);
+     getCurrentPose(Ahead, _, _);
+     moveForward(-Ahead);
      getCurrentPose(X, Y, _);
      .print("I believe to be ", math.round(1000 * math.sqrt(X * X + Y * Y)), " mm from where I started");
      X * X + Y * Y < 0.05 * 0.05;  // a condition is a step, too: if it does not hold, the goal fails

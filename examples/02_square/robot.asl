@@ -12,9 +12,9 @@
         moveForward(1);  // metres
         rotate(90);      // degrees
         getCurrentPose(X, Y, _);
-        .print("side ", Side, " done, at ", math.round(X * 100), " cm, ", math.round(Y * 100), " cm")
+        .print("side ", Side, " done, at ", math.round(X * 100), " cm, ", math.round(Y * 100), " cm");
+        ?(Side < 4 | X * X + Y * Y < 0.05 * 0.05)  // back at the start: otherwise the goal fails
      };
-     getCurrentPose(X, Y, _); X * X + Y * Y < 0.05 * 0.05;  // back at the start: otherwise the goal fails
      .stopMAS.
 
 // The robot is lifted.

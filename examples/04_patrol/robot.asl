@@ -10,7 +10,7 @@ place(2, 2, 2, 90).
 place(3, 0, 2, 180).
 place(4, 0, 0, 270).  // where the robot starts
 place(dock, 1, 1, 0).
-shift(10).    // number of recharges in a shift
+shift(10).  // number of recharges in a shift
 
 next(1).    // the corner that the robot is heading for
 visits(0).  // number of corners reached
