@@ -3,6 +3,7 @@
 import asyncio
 import os
 import signal
+import sys
 import threading
 from collections.abc import Callable
 
@@ -10,7 +11,6 @@ from jacaros.runtime.clock import start_thread
 
 _MOMENT = 1.0
 """Seconds of real time for which a virtual clock waits for a line of a pipe: a script of answers arrives in time."""
-_PIECE = 4096
 _LONGEST = 64 * 1024
 """Maximum number of bytes of a line, about; a longer one is divided."""
 
@@ -55,12 +55,12 @@ class LineInput:
             return False
 
     def _read(self) -> str | None:
-        if hasattr(signal, "pthread_sigmask"):
+        if sys.platform != "win32":
             # Reading a terminal in the background then fails. Otherwise it would stop the process, while its robot drives.
             signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGTTIN})
         while b"\n" not in self._rest and len(self._rest) < _LONGEST:
             try:
-                piece = os.read(self._descriptor, _PIECE)
+                piece = os.read(self._descriptor, _LONGEST)
             except OSError:
                 piece = b""
             if not piece:

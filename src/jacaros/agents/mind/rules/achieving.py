@@ -185,7 +185,7 @@ def _found(agent: Circumstance, condition: Term) -> list[Term]:
     found: list[Term] = []
     for symbol in asked:  # becomes longer meanwhile
         for entry, _ in agent.beliefs[symbol].entries() if symbol in agent.beliefs else ():
-            if entry.__class__ is tuple:
+            if isinstance(entry, tuple):
                 found.append(literal(symbol, entry))
             elif isinstance(entry, Rule):
                 asked.extend(each for each in dict.fromkeys(_named(entry.node.body)) if each not in asked)
