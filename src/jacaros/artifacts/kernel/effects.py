@@ -59,6 +59,7 @@ class _Watch:
     def __init__(self, artifact: Any, expect: list[Expect]) -> None:
         self._artifact, self._steps = artifact, artifact._steps
         self._execution = artifact.current
+        self._what = f"operation {artifact.current.request.key} of artifact {artifact.id.name}"
         self._places = artifact.workspace.of_same_robot(artifact.id)
         self._expect, self._meanwhile, self._pending = expect, list[Expect](), list[Expect]()
         self._known = {each.name for each in expect if self._found(each)}
@@ -114,7 +115,7 @@ class _Watch:
         if not self._pending:
             self._wake_up()
         for each in self._meanwhile:
-            if not self._is_violated(each):
+            if each.signal or not self._found(each) or self._holds(each):
                 if (timer := self._timers.pop(each, None)) is not None:
                     timer.cancel()
             elif not each.within:
@@ -125,13 +126,6 @@ class _Watch:
     def _run_out(self, each: Expect) -> None:
         del self._timers[each]
         self._stop(self._missed(each, "was stopped"))
-
-    def _is_violated(self, each: Expect) -> bool:
-        return not each.signal and bool(self._found(each)) and not self._holds(each)
-
-    @property
-    def _what(self) -> str:
-        return f"operation {self._execution.request.key} of artifact {self._steps.id.name}"
 
     def _stop(self, failure: OperationFailed) -> None:
         if not (self._execution.paused or self._execution.stopped or self._execution.ended):
@@ -147,11 +141,10 @@ class _Watch:
         """
         self.close()
         self._places = self._artifact.workspace.of_same_robot(self._steps.id)  # some may have come or gone
-        for each in self._expect:
-            if not self._found(each) and each.name not in self._known:
-                self._leave_unchecked(each)
-            elif not self._holds(each):
-                self._pending.append(each)
+        missing = [each for each in self._expect if not self._holds(each)]
+        # The first message of a property may still come; one that never comes is waited for once.
+        told = self._steps.setting.told
+        self._pending = [each for each in missing if self._is_known(each) or self._key(each) not in told]
         if not self._pending:
             return
         for each in self._pending:
@@ -166,19 +159,25 @@ class _Watch:
             if self._failure is not None:
                 raise self._failure
 
-    def _leave_unchecked(self, each: Expect) -> None:
-        key = (self._steps.id, self._execution.request.operation, each.name)
-        if key not in self._steps.setting.told:
-            self._steps.setting.told.add(key)
+    def _is_known(self, each: Expect) -> bool:
+        return bool(self._found(each)) or each.name in self._known
+
+    def _key(self, each: Expect) -> tuple[object, ...]:
+        return self._steps.id, self._execution.request.operation, each.name
+
+    def _miss(self, each: Expect) -> None:
+        if each not in self._pending or self._failure is not None:
+            return
+        if self._is_known(each):
+            self._failure = self._missed(each, "had no effect")
+        else:
+            self._steps.setting.told.add(self._key(each))
             self._artifact.log(
                 f"warning: cannot check the effect of {self._execution.request.key}: no artifact of this robot shows "
                 f"{each.name}/{len(each.values)}"
             )
-
-    def _miss(self, each: Expect) -> None:
-        if each in self._pending and self._failure is None:
-            self._failure = self._missed(each, "had no effect")
-            self._wake_up()
+            self._pending.remove(each)
+        self._wake_up()
 
     def _wake_up(self) -> None:
         if self._wake is not None and not self._wake.done():

@@ -39,6 +39,7 @@ def explain_event(past: Past, asked: Question) -> Explanation:
     for each in deeds_asked_for(past, asked):
         if (each.kind, each.agent, f"+{each.text}") == ("goal", agent, last.trigger) and each.at >= t:
             facts.append(Fact("goal", f"{shown(each.text)} {each.outcome}"))
+            facts += (Fact("note", line.strip()) for line in each.why.split("\n")[1:])
             break
     facts += earlier(at for at, _ in found)
     return Explanation(asked.written, answer, t, tuple(facts), chain(past, last.id))
