@@ -4,10 +4,8 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
-from jacaros.artifacts.env.expectation import Expect, mistake_in
-from jacaros.artifacts.env.values import plain
 from jacaros.robots.mapping.fields import (
     ALL,
     ANGLES,
@@ -39,6 +37,9 @@ from jacaros.robots.mapping.properties import TopicPart, is_misplaced, positive,
 from jacaros.robots.ros.qos import QoS
 from jacaros.runtime.files.texts import close_matches, did_you_mean
 from jacaros.runtime.files.yaml import Problem, YamlNode
+
+if TYPE_CHECKING:
+    from jacaros.artifacts.env.expectation import Expect
 
 
 class ValueSource(StrEnum):
@@ -152,8 +153,8 @@ class OperationPart:
     properties: tuple[Written, ...] = ()
     description: str = ""
     uses: tuple[str, ...] = ()
-    expect: tuple[tuple[FilePosition, Expect], ...] = ()
-    meanwhile: tuple[tuple[FilePosition, Expect], ...] = ()
+    expect: "tuple[tuple[FilePosition, Expect], ...]" = ()
+    meanwhile: "tuple[tuple[FilePosition, Expect], ...]" = ()
 
     @property
     def is_switch(self) -> bool:
@@ -399,9 +400,11 @@ _SETTINGS = ("within", "else", "no")
 """Keys of an expectation that are not names of properties."""
 
 
-def _expectations(node: YamlNode, part: OperationPart) -> tuple[tuple[FilePosition, Expect], ...]:
+def _expectations(node: YamlNode, part: OperationPart) -> "tuple[tuple[FilePosition, Expect], ...]":
     """Read what an operation expects: a mapping, or a list of them."""
-    found: list[tuple[FilePosition, Expect]] = []
+    from jacaros.artifacts.env.expectation import Expect  # here: few files expect anything
+
+    found = []
     for item in each_of(node):
         named = list(item.entries())
         settings = {name.value: value for name, value in named if name.value in _SETTINGS}
@@ -415,24 +418,24 @@ def _expectations(node: YamlNode, part: OperationPart) -> tuple[tuple[FilePositi
         for (name, values), signal in patterns:
             given = [_pattern(each, part.parameters) for each in values.sequence()]
             if given or values.value in (None, []):  # otherwise not a list, which is reported
-                expected = Expect(belief_name(name), given, within, reason, signal)
-                found.append((place_of(name), expected))
+                found.append((place_of(name), Expect(belief_name(name), given, within, reason, signal)))
     return tuple(found)
 
 
 def _pattern(node: YamlNode, parameters: tuple[str, ...]) -> object:
-    pattern = plain(node.value)
-    if (wrong := mistake_in(pattern, parameters)) is not None:
+    from jacaros.artifacts.env import expectation, values
+
+    pattern = values.plain(node.value)
+    if (wrong := expectation.mistake_in(pattern, parameters)) is not None:
         node.wrong(*wrong)
     return pattern
 
 
 def _effects(node: YamlNode, part: OperationPart) -> dict[str, Any]:
     found = _expectations(node, part)
-    for place, each in found:
-        if each.signal:
-            text = "`no` is about signals while the operation runs"
-            node.problems.append(place.problem(text, "write it below `meanwhile`"))
+    for place in [place for place, each in found if each.signal]:
+        text = "`no` is about signals while the operation runs"
+        node.problems.append(place.problem(text, "write it below `meanwhile`"))
     return {"expect": found}
 
 
