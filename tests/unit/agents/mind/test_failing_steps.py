@@ -37,6 +37,12 @@ a goal can be failed before it is handled => k | failh(1) | after
     +!h(_) <- .print(no).
     -!h(X) <- .print(failh(X)).
     +!x.
+a goal that another plan fails has a message, and no error => .fail_goal in the plan of !k ended it
+    !g. !k.
+    +!g <- .wait(1000).
+    -!g[error(E)] <- .print(E).
+    -!g[error_msg(Text)] <- .print(Text).
+    +!k <- .fail_goal(g).
 a goal that is not achieved by its deadline fails
 => deadline_reached | after | quick | k deadline_reached | end
     !g.

@@ -303,8 +303,9 @@ def succeed_goal(ctx: Context, goal: Term) -> object:
 
 @internal_action(".fail_goal", arity=1, suspends=True)
 def fail_goal(ctx: Context, goal: Term) -> object:
-    """``.fail_goal(G)`` ends matching goals as failed; the failure event has no ``error`` annotation."""
-    reason = nowhere(told=f".fail_goal{_caller(ctx)} ended it")
+    """``.fail_goal(G)`` ends matching goals as failed; the failure event has ``error_msg``, but no ``error``."""
+    told = f".fail_goal{_caller(ctx)} ended it"
+    reason = nowhere((ERROR_MSG, String(told)), told=told)
     own = _on_goal(ctx, goal, lambda wanted: goals.fail_goal(ctx.agent, wanted, reason))
     return SUSPENDED if own else None
 
