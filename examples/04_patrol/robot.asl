@@ -37,9 +37,9 @@ lowest(100).  // lowest battery level on arrival in the dock, in percent
      -+next(Corner mod 4 + 1);
      !end_of_shift.
 
-+!end_of_shift : recharges(N) & shift(N)
++!end_of_shift : recharges(N) & shift(N) & .count(unreachable(_, _), Missing)
   <- !report;
-     .stopMAS.
+     .stopMAS(0, Missing).  // the exit status: corners that were left out and not reached again
 
 +!end_of_shift.
 

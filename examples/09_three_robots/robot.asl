@@ -119,9 +119,9 @@ can_help(Percent) :- percent_left(Percent) & Percent > 40 & not charging & not o
      ?status(Status);
      .stopMAS(0, Status).
 
-// The exit status reports that a robot is in need.
-status(1) :- in_need.
-status(0) :- not in_need.
+// The exit status reports that a robot is in need, or has left out a place.
+status(1) :- in_need | unreachable(_, _).
+status(0) :- not in_need & not unreachable(_, _).
 
 { include("$jacaros/navigation.asl") }
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from examples_lab import checker, doing_at, falsified, run, run_of, spoilt, world_with
+from examples_lab import EXAMPLES, LONGEST, checker, doing_at, falsified, run, run_of, spoilt, world_with
 
 import jacaros.robots.world
 from jacaros.robots.world import GroundTruth, RobotEvent
@@ -79,6 +79,36 @@ def test_the_bathroom_floor_is_mopped_after_the_recharge_when_the_tub_was_scrubb
 def test_the_program_alone_runs_in_the_world_of_the_command_line() -> None:
     alone = run("05_house_cleaning/robot.asl", "rounds(1)", HOUSE)
     assert check(alone.ground_truth, rounds=1, recharges=0).passed
+
+
+OVER_NAV2 = EXAMPLES.parent / "experiment/agents/house_cleaning/house_cleaning.jcm"
+
+
+def aborted(seconds: float) -> str:
+    """A fault file: navigation aborts its goals for that time."""
+    return f"faults:\n  f: {{kind: aborted_action, action: /navigate_to_pose, at: 3, for: {seconds}}}\n"
+
+
+@pytest.mark.slow
+def test_over_nav2_it_comes_back_to_a_room_that_was_out_of_reach() -> None:
+    result = run_project(OVER_NAV2, faults=aborted(60), seconds=LONGEST)
+    assert [line[:60] for line in result.lines] == [
+        "[robot] I need help, or come back later: place 1 is out of r"
+    ]
+    tasks_done = [event.data["task"] for event in tasks(result.ground_truth)]
+    assert tasks_done.count("vacuum carpet living_room") == 4
+    assert result.exit_code == 0
+
+
+@pytest.mark.slow
+def test_over_nav2_a_room_that_is_left_out_makes_the_exit_status_1(tmp_path: Path) -> None:
+    world = world_with(
+        tmp_path, HOUSE, "{from: [2.75, 1.6], to: [3.2, 3.2]", "{from: [1.5, 1.5], to: [3.2, 3.2]"
+    )
+    result = run_project(OVER_NAV2, world=world, seconds=LONGEST)
+    assert result.lines[-1] == "[robot] I need help: place 2 was left out"
+    assert len(tasks(result.ground_truth)) == 12, "the other rooms are clean"
+    assert result.exit_code == 1
 
 
 # The checker on runs that went otherwise.

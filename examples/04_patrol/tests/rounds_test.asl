@@ -20,7 +20,7 @@
 
 @ends_the_shift_after_its_recharges[test]
 +!test_shift
-  <- !fake_action(.stopMAS);
+  <- !fake_action(.stopMAS(_, _));
      -+recharges(10);
      -+visits(42);
      !arrived(3);
@@ -28,6 +28,14 @@
      !assert_printed("43 corners, that is 10 rounds and 3 of the next");
      !assert_printed("10 recharges, and never less than 100 %");
      !assert_did(.stopMAS).
+
+@tells_by_the_exit_status_that_a_corner_was_left_out[test]
++!test_left_out
+  <- !fake_action(.stopMAS(_, _));
+     -+recharges(10);
+     +unreachable(2, blocked(0.3));
+     !arrived(3);
+     !assert_did(.stopMAS(0, 1)).
 
 @remembers_the_lowest_percentage_only[test]
 +!test_lowest

@@ -15,12 +15,12 @@ rounds(4).
 
 +!start : rounds(N)
   <- !use_artifact("household", "ArtCleaning");
-     !!keep_charged;
-     !patrol([1, 2, 3, 0], N);
-     .stopMAS.
+     !keep_charged |&| (!patrol([1, 2, 3, 0], N); .stopMAS).
 
--!keep_charged
-  <- .stopMAS(0, 1).  // the exit status reports the failure
+// It could not charge, or has left out a room.
+-!start[error_msg(Text)]
+  <- .print("I need help: ", Text);
+     .stopMAS(0, 1).  // the exit status reports the failure
 
 +!arrived(0).
 

@@ -49,12 +49,35 @@ place(c, 3, 0, 0).
   <- +attempts(1);
      !fakes;
      !fake_action(navigate_to(2, 0, 0), failed(aborted(208, "no way"), "no way"));
-     !patrol([a, b, c], 1);
+     !assert_fail(patrol([a, b, c], 1));
      !assert_true(unreachable(b, aborted(208, _)));
      !assert_true(been(a) & been(c) & not been(b));
+     !assert_did(navigate_to(2, 0, 0), 2);  // it has come back
      !fakes;
      !patrol([b], 1);
      !assert_false(unreachable(b, _)).
+
+@comes_back_to_a_place_in_the_same_round[test]
++!test_come_back
+  <- +attempts(1);
+     !fakes;
+     !fake_action(navigate_to(2, 0, 0), failed(aborted(208, "no way"), "no way"));
+     !!patrol([a, b, c], 1);
+     .wait(been(a), 3000);
+     .wait(unreachable(b, _), 3000);
+     !fake_action(navigate_to(2, 0, 0), after(1000));
+     .wait(been(b), 5000);
+     !assert_true(been(c)).
+
+@a_place_that_was_left_out_in_one_round_fails_the_patrol_at_its_end[test]
++!test_left_out
+  <- +attempts(1);
+     !fakes;
+     !fake_action(navigate_to(2, 0, 0), failed(aborted(208, "no way"), "no way"));
+     !assert_fail(patrol([a, b], 3))
+     |&|
+     (.wait(left_out(b, _), 10000); !fake_action(navigate_to(2, 0, 0), after(1000)));
+     !assert_true(been(b)).
 
 @an_unknown_place_ends_the_patrol[test]
 +!test_unknown

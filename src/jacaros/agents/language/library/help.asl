@@ -6,9 +6,10 @@
 //
 //     !help(no_current);           // succeeds on `retry`, fails with advised(skip) or advised(stop)
 //     !help(no_current, Answer);   // retry, skip or stop
+//     !help_or_stop(no_current);   // succeeds on `retry`; otherwise the run ends, with exit status 1
 //
-// Without an Operator, and without an answer in time, both print the text and fail with no_help(Reason).  The text has
-// these beliefs, which a program or a library adds, and facts; add rules for more:
+// Without an Operator, and without an answer in time, the first two print the text and fail with no_help(Reason).  The
+// text has these beliefs, which a program or a library adds, and facts; add rules for more:
 //
 //     tried("went to the dock three times").            // what was tried
 //     would_help(no_current, "wipe the contacts").      // what a person could do
@@ -29,6 +30,12 @@ would_help(unreachable(_), "clear the way").
 +!help(Reason)
   <- !help(Reason, Answer);
      !take_advice(Reason, Answer).
+
++!help_or_stop(Reason)
+  <- !help(Reason).
+
+-!help_or_stop(_)
+  <- .stopMAS(0, 1).
 
 +!take_advice(_, retry).
 

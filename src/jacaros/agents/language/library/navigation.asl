@@ -125,11 +125,25 @@ patience(300000) :- not slowest_percent(_).
   <- !round(Places);
      !patrol(Places).
 
++!patrol(_, Rounds) : Rounds <= 0 & left_out(Place, Reason)
+  <- .abolish(left_out(_, _));
+     .concat("place ", Place, " was left out", Text);
+     .fail(error(left_out), error_msg(Text), env_failure_reason(Reason)).
+
 +!patrol(_, Rounds) : Rounds <= 0.
 
 +!patrol(Places, Rounds)
   <- !round(Places);
+     !come_back(Places);
      !patrol(Places, Rounds - 1).
+
+// After the others, a place may be within reach.
++!come_back(Places)
+  <- .findall(Place, .member(Place, Places) & unreachable(Place, _), Missed);
+     !round(Missed);
+     for (.member(Place, Missed) & unreachable(Place, Reason)) {
+        +left_out(Place, Reason)
+     }.
 
 +!round([]).
 
