@@ -365,7 +365,6 @@ _SCAN = {
 _FRAMES: tuple[dict[str, Any], ...] = (
     {"op": "publish", "topic": "/scan", "msg": _SCAN},
     {"op": "service_response", "id": "1", "service": "/s", "values": {"a": [1]}, "result": True},
-    {"op": "fragment", "id": "1", "data": '{"op": "status"}', "num": 0, "total": 1},
     {"op": "status", "level": "error", "msg": "no", "id": "x"},
     {"op": "action_feedback", "id": "goal", "values": {"a": 1}},
 )

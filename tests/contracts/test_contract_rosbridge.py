@@ -4,7 +4,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +18,6 @@ from jacaros.robots.ros.errors import (
     CapabilityMissing,
     ParameterUnknown,
     ServerLost,
-    ServiceUnavailable,
     UnknownInterface,
 )
 from jacaros.robots.ros.open import open_backend
@@ -242,8 +241,8 @@ def test_unsupported_requests_have_clear_errors(robot_of_ros2: BehindBridge) -> 
         client.declare("a", 1, node="/robot")
     with pytest.raises(CapabilityMissing, match="deadlines"):
         client.subscribe("/a", STRING, deadline=1.0)
-    with pytest.raises(UnknownInterface, match="the rosbridge server does not know it either"):
-        answered(robot_of_ros2, lambda: client.subscribe("/a", "nowhere_msgs/msg/Nothing"))
+    with pytest.raises(UnknownInterface, match=r"is not known here; .* \(in a mapping file: interfaces\)"):
+        client.subscribe("/a", "nowhere_msgs/msg/Nothing")
 
 
 def test_parameters_of_a_ros1_master(request: pytest.FixtureRequest) -> None:
@@ -273,55 +272,6 @@ def test_a_topic_of_1_khz_does_not_starve_the_loop(robot_of_ros2: BehindBridge) 
     robot.serve("/sum")
     for number in range(20):
         assert client.call("/sum", {"a": number, "b": 1}, timeout=60) == {"sum": number + 1}
-
-
-def answered(graph: BehindBridge, ask: Callable[[], Any]) -> Any:
-    """What comes of something for which the server is asked, again where it was too slow: the loop cannot wait for long."""
-    answers: list[Any] = []
-
-    def asked() -> bool:
-        try:
-            answers.append(ask())
-        except UnknownInterface as problem:
-            if "has not answered yet" not in str(problem):
-                raise
-        return bool(answers)
-
-    graph.wait_until(asked, "the server answers")
-    return answers[0]
-
-
-def test_unknown_types_come_from_the_server(request: pytest.FixtureRequest, tmp_path: Any) -> None:
-    need("rosbridge", request.config)
-    package = tmp_path / "odd_msgs"
-    for kind in ("msg", "srv"):
-        (package / kind).mkdir(parents=True)
-    (package / "msg" / "Part.msg").write_text("float32[3] sizes\nstring name\n")
-    (package / "msg" / "Thing.msg").write_text(
-        "int8 BIG=3\nstd_msgs/Header header\nPart[] parts\nbool ok\nbyte level\n"
-    )
-    (package / "srv" / "Find.srv").write_text("string name\n---\nThing thing\nbool found\n")
-    graph = BehindBridge("rosbridge-ros2", BridgeServer("ros2", "--interfaces", str(tmp_path)))
-    try:
-        client = graph.peer("client")
-        fields = answered(graph, lambda: client.fields("odd_msgs/msg/Thing"))
-        assert fields == {
-            "header": "std_msgs/msg/Header",
-            "parts": "odd_msgs/msg/Part[]",
-            "ok": "bool",
-            "level": "byte",
-        }
-        client.advertise("/thing", "odd_msgs/msg/Thing")
-        client.subscribe("/thing", "odd_msgs/msg/Thing")
-        graph.wait_until(lambda: client.subscription_count("/thing") == 1, "the topic is joined")
-        client.publish("/thing", {"parts": [{"sizes": [1, 2, 3], "name": "n"}], "level": 2})
-        graph.wait_until(lambda: client.received("/thing"), "the message arrives")
-        [thing] = client.received("/thing")
-        assert thing["parts"] == [{"sizes": [1.0, 2.0, 3.0], "name": "n"}]
-        request = answered(graph, lambda: client.message("odd_msgs/srv/Find_Request", name="x"))
-        assert request == {"name": "x"}
-    finally:
-        graph.close()
 
 
 def test_a_robot_behind_a_lost_link_gets_zero_when_the_program_ends(bridged: BehindBridge) -> None:
@@ -439,31 +389,10 @@ def test_a_server_without_rosapi_is_logged_and_taken_for_ros2(robot_of_ros2: Beh
     client = robot_of_ros2.peer("client", start=False)
     client.start()
     assert client.ros_version() == 2
-    [told] = [line for line in client.log() if "has no rosapi node" in line]
-    assert "If rosapi has crashed" in told
-    assert "interfaces" in told
+    assert sum("has no rosapi node" in line for line in client.log()) == 1
     client.advertise("/a", STRING)
     client.subscribe("/a", STRING)
     robot_of_ros2.wait_until(lambda: _arrives(client), "topics work all the same")
-
-
-def test_rosapi_that_ends_at_a_type_is_reported_with_the_type(robot_of_ros2: BehindBridge) -> None:
-    client = robot_of_ros2.peer("client")
-    robot_of_ros2.server.do("rosapi_ends_at", "odd_msgs/msg/Thing")
-    with pytest.raises(UnknownInterface):
-        client.fields("odd_msgs/msg/Other")
-    with pytest.raises(UnknownInterface):
-        client.fields("odd_msgs/msg/Thing")
-    reason = "rosapi crashed when it was asked for the type odd_msgs/msg/Thing"
-    robot_of_ros2.wait_until(lambda: any(reason in line for line in client.log()), "it is reported")
-    assert not any("odd_msgs/msg/Other" in line for line in client.log())
-    with pytest.raises(ServiceUnavailable, match=reason):
-        client.contents()
-    with pytest.raises(UnknownInterface):
-        client.fields("odd_msgs/msg/Third")
-    assert sum(reason in line for line in client.log()) == 1
-    robot_of_ros2.server.do("rosapi", True)
-    assert client.contents()["nodes"]
 
 
 def listening(robot_of_ros2: BehindBridge, tmp_path: Path) -> str:

@@ -48,8 +48,6 @@ class Connection:
         self._subscriptions: dict[str, tuple[str, Any, set[str]]] = {}
         self._statuses: set[str] = set()
         self._hears_of_parameters = False
-        self._fragmented = 0
-        self._pieces: dict[str, dict[int, str]] = {}
         self._services: dict[str, AdvertisedService] = {}
         self._actions: dict[str, AdvertisedAction] = {}
         self._tasks: set[asyncio.Task[None]] = set()
@@ -73,28 +71,7 @@ class Connection:
     def send(self, message: dict[str, Any]) -> None:
         """Send an operation to the client."""
         if self._alive:
-            for frame in self._frames(json.dumps(message)):
-                self._write(frame.encode(), False)
-
-    def _frames(self, text: str) -> list[str]:
-        size = self.bridge.max_message_size
-        if len(text) <= size:
-            return [text]
-        size //= 2  # within the limit with all that is escaped
-        pieces = [text[begin : begin + size] for begin in range(0, len(text), size)]
-        self._fragmented += 1
-        return [
-            json.dumps(
-                {"op": "fragment", "id": self._fragmented, "data": piece, "num": num, "total": len(pieces)}
-            )
-            for num, piece in enumerate(pieces)
-        ]
-
-    def _op_fragment(self, message: dict[str, Any]) -> None:
-        pieces = self._pieces.setdefault(message["id"], {})
-        pieces[message["num"]] = message["data"]
-        if len(pieces) == message["total"]:
-            self.receive("".join(pieces[num] for num in range(len(self._pieces.pop(message["id"])))).encode())
+            self._write(json.dumps(message).encode(), False)
 
     def send_packed(self, message: dict[str, Any]) -> None:
         """Send an operation as CBOR."""

@@ -9,9 +9,7 @@ from conversion import short
 from parameters import ParameterServices
 
 from jacaros.robots.ros.errors import CallFailed, JacarosError, ParameterError
-from jacaros.robots.ros.fields import FieldType
 from jacaros.robots.ros.interfaces import BUILT_IN, split
-from jacaros.robots.ros.names import feedback_type, goal_type, request_type, response_type, result_type
 from jacaros.robots.ros.node import Node
 
 ACTIONLIB = ("goal", "cancel", "feedback", "result", "status")
@@ -30,7 +28,6 @@ class RosApi:
     Attributes:
         master: the parameters of ROS 1, by absolute name.
         running: whether there is such a node.
-        ends_at: a type at which it ends when it is asked for it.
     """
 
     def __init__(self, node: Node, ros1: bool, under_way: Sequence[str] = ()) -> None:
@@ -40,22 +37,16 @@ class RosApi:
         self._ros1 = ros1
         self.master: dict[str, Any] = {}
         self.running = True
-        self.ends_at = ""
         self._services: dict[str, Callable[..., Any]] = {
             name: getattr(self, "_services_list" if name == "services" else f"_{name}")
             for name in (
                 *("topics", "services", "nodes", "publishers", "subscribers", "topic_type", "service_type"),
-                *("action_servers", "message_details", "service_request_details", "service_response_details"),
-                *("get_param", "set_param", "has_param", "get_param_names"),
+                *("action_servers", "get_param", "set_param", "has_param", "get_param_names"),
             )
         }
         if not ros1:
             self._services["get_ros_version"] = lambda: {"version": 2, "distro": "jazzy"}
-            for name in (
-                "action_type",
-                *(f"action_{part}_details" for part in ("goal", "result", "feedback")),
-            ):
-                self._services[name] = getattr(self, f"_{name}")
+            self._services["action_type"] = self._action_type
 
     @property
     def names(self) -> list[str]:
@@ -69,8 +60,6 @@ class RosApi:
     async def call(self, service: str, arguments: dict[str, Any]) -> dict[str, Any]:
         """Answer one call; raises `CallFailed` with what rosbridge would say."""
         answer = self._services.get(service.removeprefix("/rosapi/"))
-        if self.ends_at and arguments.get("type") == self.ends_at:
-            self.running = False
         if answer is None or not self.running:
             raise CallFailed(f"Service {service} does not exist")
         try:
@@ -128,58 +117,6 @@ class RosApi:
     async def _action_type(self, action: str) -> dict[str, Any]:
         return {"type": (await self._contents()).actions.get(action, "")}
 
-    def _message_details(self, type: str) -> dict[str, Any]:
-        return self._details(_full(type, "msg"))
-
-    def _service_request_details(self, type: str) -> dict[str, Any]:
-        return self._details(request_type(_full(type, "srv")))
-
-    def _service_response_details(self, type: str) -> dict[str, Any]:
-        return self._details(response_type(_full(type, "srv")))
-
-    def _action_goal_details(self, type: str) -> dict[str, Any]:
-        return self._details(goal_type(_full(type, "action")))
-
-    def _action_result_details(self, type: str) -> dict[str, Any]:
-        return self._details(result_type(_full(type, "action")))
-
-    def _action_feedback_details(self, type: str) -> dict[str, Any]:
-        return self._details(feedback_type(_full(type, "action")))
-
-    def _details(self, type_name: str) -> dict[str, Any]:
-        """A type and all that it is made of."""
-        seen: dict[str, dict[str, Any]] = {}
-        waiting = [type_name]
-        while waiting:
-            each = waiting.pop(0)
-            if each not in seen:
-                fields = self._node.factory.fields(each)
-                seen[each] = self._typedef(each, fields)
-                waiting += [field.base for field in fields.values() if field.is_message]
-        return {"typedefs": list(seen.values())}
-
-    def _typedef(self, type_name: str, fields: Any) -> dict[str, Any]:
-        kind = type(self._node.factory.new(type_name))
-        constants = [name for name in vars(kind) if name.isupper()]
-        return {
-            "type": short(type_name),
-            "fieldnames": list(fields),
-            "fieldtypes": [self._base(field) for field in fields.values()],
-            "fieldarraylen": [
-                (field.length if field.fixed else 0) if field.array else -1 for field in fields.values()
-            ],
-            "examples": ["" for _ in fields],
-            "constnames": [*constants, "SLOT_TYPES"],
-            "constvalues": [*(str(getattr(kind, name)) for name in constants), "(...)"],
-        }
-
-    def _base(self, field: FieldType) -> str:
-        if self._ros1:
-            times = {"builtin_interfaces/msg/Time": "time", "builtin_interfaces/msg/Duration": "duration"}
-            return times.get(field.base, short(field.base) if field.is_message else field.base)
-        names = {"float64": "double", "float32": "float", "bool": "boolean", "byte": "octet"}
-        return names.get(field.base, short(field.base) if field.is_message else field.base)
-
     async def _get_param(self, name: str, default_value: str = "") -> dict[str, Any]:
         if self._ros1:
             return {"value": json.dumps(self.master[name]) if name in self.master else default_value}
@@ -213,11 +150,6 @@ class RosApi:
 
     def _written(self, type_name: str) -> str:
         return short(type_name) if self._ros1 and type_name else type_name
-
-
-def _full(name: str, kind: str) -> str:
-    parts = name.split("/")
-    return name if len(parts) == 3 else f"{parts[0]}/{kind}/{parts[1]}"
 
 
 def write_ros1_types(folder: Path) -> None:

@@ -78,17 +78,14 @@ class Socket(WebSocketServerProtocol):  # type: ignore[misc]
 class Bridge:
     """The server and its graph."""
 
-    def __init__(
-        self, ros1: bool, folders: tuple[Path, ...], talkative: bool = False, knows_actions: bool = True
-    ) -> None:
+    def __init__(self, ros1: bool, folder: Path, talkative: bool = False, knows_actions: bool = True) -> None:
         self.ros1 = ros1
         self.talkative = talkative
         self.knows_actions = knows_actions and not ros1
         self.frozen = False
-        self.max_message_size = 10_000_000
         self.graph = MemoryGraph()
         self.graph.parameter_listeners = _ParameterEvents(self)
-        settings = NodeSettings(WallClock(), "rosbridge_websocket", interface_paths=folders)
+        settings = NodeSettings(WallClock(), "rosbridge_websocket", interface_paths=(folder,))
         self.node = MemoryBackend(settings, self.graph)
         self.goals = SentGoals(self)
         self.parameters = ParameterServices(self.node)
@@ -103,7 +100,7 @@ class Bridge:
         loop = asyncio.get_running_loop()
         factory = WebSocketServerFactory(loop=loop)
         factory.protocol, factory.bridge = Socket, self
-        factory.setProtocolOptions(maxMessagePayloadSize=self.max_message_size)
+        factory.setProtocolOptions(maxMessagePayloadSize=10_000_000)
         self._server = await loop.create_server(factory, "127.0.0.1", port)
         self.port = self._server.sockets[0].getsockname()[1]
 
@@ -181,8 +178,6 @@ async def obey(bridge: Bridge, command: dict[str, Any], peers: dict[str, Peer]) 
             bridge.rosapi.running = command["args"][0]
         case "rosapi_without":
             bridge.rosapi.remove(*command["args"])
-        case "rosapi_ends_at":
-            bridge.rosapi.ends_at = command["args"][0]
         case "node":
             made = Peer("memory", WallClock(), *command["args"], graph=bridge.graph, **command["kwargs"])
             peers[command["peer"]] = made
@@ -231,7 +226,6 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="A rosbridge server for tests.")
     parser.add_argument("--port", type=int, default=0)
     parser.add_argument("--flavour", choices=("ros1", "ros2"), default="ros2")
-    parser.add_argument("--interfaces", type=Path, action="append", default=[])  # folders with definitions
     parser.add_argument(
         "--talkative", action="store_true"
     )  # tell clients of refusals, as some other servers do
@@ -240,8 +234,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         if options.flavour == "ros1":
             write_ros1_types(Path(folder))
-        folders = (Path(folder), *options.interfaces)
-        manner = (options.flavour == "ros1", folders, options.talkative, not options.without_actions)
+        manner = (options.flavour == "ros1", Path(folder), options.talkative, not options.without_actions)
         run(lambda: serve(options.port, lambda: Bridge(*manner)), WallClock())
 
 

@@ -43,7 +43,7 @@ class Actionlib:
     async def open(self) -> ActionClient:
         graph = MemoryGraph()
         self.graph = graph
-        schema = BridgeSchema((), lambda service, arguments: None, lambda: None)
+        schema = BridgeSchema()
         for part in ("ActionGoal", "ActionResult", "ActionFeedback"):
             schema.fields(part_type(COUNT, part))
         robot, here = await self._node(graph, "robot"), await self._node(graph, "client")

@@ -1,6 +1,5 @@
 """Messages, types, requests and operations of the rosbridge protocol, without a connection."""
 
-import json
 import math
 from typing import Any
 
@@ -9,16 +8,8 @@ import pytest
 
 pytest.importorskip("websockets")
 
-from jacaros.robots.ros.errors import UnknownInterface
-from jacaros.robots.ros.protocols.rosbridge_messages import BridgeSchema, Translator
-from jacaros.robots.ros.protocols.rosbridge_wire import (
-    LONGEST,
-    OPEN_AT_ONCE,
-    Fragments,
-    Polled,
-    Requests,
-    frames,
-)
+from jacaros.robots.ros.protocols.rosbridge_messages import Translator
+from jacaros.robots.ros.protocols.rosbridge_wire import Polled, Requests
 from jacaros.robots.ros.typestore import DefinitionSchema
 
 SCAN, IMAGE, STAMP = (
@@ -87,30 +78,6 @@ def test_what_is_not_of_the_type_is_refused_with_the_name_of_the_field(
         translator.decode(SCAN, value)
 
 
-def test_a_large_operation_is_cut_into_fragments_that_make_it_again_in_any_order() -> None:
-    operation = {"op": "publish", "topic": "/a", "msg": {"data": 'ä"' * LONGEST}}
-    pieces = [json.loads(frame) for frame in frames(operation)]
-    assert len(pieces) > 1
-    assert all(len(frame) < 10_000_000 for frame in frames(operation))
-    fragments = Fragments()
-    made = [fragments.add(piece) for piece in reversed(pieces)]
-    assert made == [None] * (len(pieces) - 1) + [operation]
-
-
-def test_incomplete_operations_are_limited_and_forgotten_with_the_connection() -> None:
-    fragments = Fragments()
-
-    def half(number: int, which: int) -> dict[str, Any]:
-        return {"op": "fragment", "id": number, "num": which, "total": 2, "data": ('{"op":', '"x"}')[which]}
-
-    for number in range(OPEN_AT_ONCE + 1):
-        assert fragments.add(half(number, 0)) is None
-    assert fragments.add(half(0, 1)) is None, "the oldest was given up"
-    assert fragments.add(half(OPEN_AT_ONCE, 1)) == {"op": "x"}
-    fragments.clear()
-    assert fragments.add(half(OPEN_AT_ONCE - 1, 1)) is None
-
-
 @pytest.mark.parametrize(
     ("tag", "octets", "numbers"),
     [
@@ -134,29 +101,12 @@ def test_half_an_element_is_refused(translator: Translator, tag: int) -> None:
         translator.decode(SCAN, {"ranges": cbor2.CBORTag(tag, b"\x00\x00\x00")})
 
 
-def test_a_server_that_has_not_answered_is_not_said_to_know_nothing_and_is_asked_again() -> None:
-    answers: list[Any] = [TimeoutError(), None]
-
-    def ask(service: str, arguments: dict[str, Any]) -> dict[str, Any] | None:
-        answer = answers.pop(0)
-        if isinstance(answer, Exception):
-            raise answer
-        return answer
-
-    schema = BridgeSchema((), ask, lambda: None)
-    with pytest.raises(UnknownInterface, match="has not answered yet"):
-        schema.fields("odd_msgs/msg/Thing")
-    with pytest.raises(UnknownInterface, match="the rosbridge server does not know it either"):
-        schema.fields("odd_msgs/msg/Thing")
-    assert answers == []
-
-
 class Rosapi:
     """Answers requests when a test wants."""
 
     def __init__(self) -> None:
         self.asked: list[str] = []
-        self.requests = Requests(self._take, lambda question, seconds: None)
+        self.requests = Requests(self._take)
         self.polled = Polled(
             self.requests, "/rosapi/subscribers", {}, lambda seen: len(seen["subscribers"]), 0
         )

@@ -1,4 +1,4 @@
-"""Messages in the notation of the rosbridge protocol, and definitions of types that the server knows.
+"""Messages in the notation of the rosbridge protocol.
 
 The notation is that of ``rosbridge_library.internal.message_conversion``: arrays of octets in base64, times as
 ``secs`` and ``nsecs`` on ROS 1 and ``sec`` and ``nanosec`` on ROS 2, and ``null`` for the floating-point numbers that
@@ -12,20 +12,16 @@ message with an array of fixed length, for instance, is lost.
 import base64
 import binascii
 import math
-import re
 import struct
 import sys
 from array import array
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import Any
 
-from jacaros.robots.ros.errors import UnknownInterface
 from jacaros.robots.ros.fields import DURATION, FLOATS, TIME, FieldType
 from jacaros.robots.ros.message import Memo, array_of_numbers
-from jacaros.robots.ros.names import message_type
 from jacaros.robots.ros.typestore import DefinitionSchema, is_stored
 
 _OCTETS = ("uint8", "char")
@@ -251,23 +247,6 @@ def _can_be_packed(field: FieldType) -> bool:
     return not field.array or (not field.length and field.base != "string")
 
 
-Ask = Callable[[str, dict[str, Any]], dict[str, Any] | None]
-"""Calls a service of rosapi and waits for the fields of its response; None if it fails, `TimeoutError` if there is no
-answer."""
-
-_DETAILS = {
-    "msg": ("message_details",),
-    "srv": ("service_request_details", "service_response_details"),
-    "action": ("action_goal_details", "action_result_details", "action_feedback_details"),
-}
-"""Services of rosapi that return the parts of a definition, in the order of the file."""
-_BASES = {"double": "float64", "float": "float32", "boolean": "bool", "octet": "byte"}
-_ROS1_BASES = {
-    "char": "uint8",
-    "byte": "int8",
-    "time": "builtin_interfaces/Time",
-    "duration": "builtin_interfaces/Duration",
-}
 _OWN = {
     "rosgraph_msgs/msg/Log": "std_msgs/Header header\nbyte level\nstring name\nstring msg\nstring file\n"
     "string function\nuint32 line\nstring[] topics\n",
@@ -283,26 +262,10 @@ _ACTIONLIB = {
     "ActionFeedback": "std_msgs/Header header\nactionlib_msgs/GoalStatus status\n{action}_Feedback feedback\n",
 }
 """The wrappers that actionlib adds to the three parts of an action."""
-_NO_FIELD = "structure_needs_at_least_one_member"
-_SEQUENCE = re.compile(r"sequence<(?P<base>.+?)(?:,\s*\d+)?>")
-_INTEGER = re.compile(r"-?\d+")
-_CONSTANT = re.compile(r"[A-Z][A-Z0-9_]*")
 
 
 class BridgeSchema(DefinitionSchema):
-    """Message classes of `DefinitionSchema`, plus those whose definitions the server knows.
-
-    Args:
-        roots: the user's own definition folders.
-        ask: asks the server; it blocks the calling thread, but once per otherwise unknown type.
-        describe: returns why the server cannot be asked, None if it can.
-    """
-
-    def __init__(self, roots: Sequence[Path], ask: Ask, describe: Callable[[], str | None]) -> None:
-        super().__init__(roots)
-        self._ask = ask
-        self._describe = describe
-        self._reported: dict[str, str] = {}
+    """Message classes of `DefinitionSchema`, plus those that the backend itself and actionlib need."""
 
     def _require(self, type_name: str) -> None:
         action, _, part = type_name.rpartition("_")
@@ -312,37 +275,7 @@ class BridgeSchema(DefinitionSchema):
             self._register(type_name, _ACTIONLIB[part].format(action=action))
 
     def _definition(self, type_name: str) -> str:
-        try:
-            return super()._definition(type_name)
-        except UnknownInterface as unknown:
-            # The second: parts of types that the server has described.
-            known = _OWN.get(type_name) or self._reported.get(type_name)
-            if known is not None:
-                return known
-            reason = self._describe()
-            if reason is None:
-                try:
-                    text = self._fetch(type_name)
-                    if text is not None:
-                        return text
-                    reason = "the rosbridge server does not know it either"
-                except TimeoutError:
-                    reason = "the rosbridge server was asked for it, but has not answered yet"
-            raise UnknownInterface(f"{unknown} ({reason})") from None
-
-    def _fetch(self, type_name: str) -> str | None:
-        """Return the definition of a type in the form of a file, and store those of its parts."""
-        parts = []
-        for service in _DETAILS[type_name.split("/")[1]]:
-            answer = self._ask(f"/rosapi/{service}", {"type": type_name})
-            typedefs = None if answer is None else answer.get("typedefs")
-            if not typedefs:
-                return None
-            whole, *others = typedefs
-            parts.append(definition_text(whole))
-            for other in others:
-                self._reported.setdefault(message_type(other["type"]), definition_text(other))
-        return "---\n".join(parts)
+        return _OWN.get(type_name) or super()._definition(type_name)
 
 
 def written_on_ros1(type_name: str) -> str:
@@ -351,38 +284,3 @@ def written_on_ros1(type_name: str) -> str:
     if kind == "action":  # one of the messages of an action
         name = "".join(name.rsplit("_", 1))
     return f"{package}/{name}"
-
-
-def definition_text(typedef: Mapping[str, Any]) -> str:
-    """Convert a ``rosapi_msgs/msg/TypeDef`` to the text of a definition.
-
-    Args:
-        typedef: its fields; the length of an array is -1 for a single value and 0 for no limit.
-    """
-    ros1 = "/msg/" not in "".join(typedef["fieldtypes"]) and not _BASES.keys() & set(typedef["fieldtypes"])
-    lines = list(_constants(typedef))
-    lengths = typedef.get("fieldarraylen") or [-1] * len(typedef["fieldnames"])
-    for name, kind, length in zip(typedef["fieldnames"], typedef["fieldtypes"], lengths, strict=True):
-        if name != _NO_FIELD:
-            sequence = _SEQUENCE.fullmatch(kind)
-            if sequence is not None:  # this is how bounded sequences of bounded strings are described
-                kind, length = sequence["base"], 0
-            array = "" if length < 0 else f"[{length or ''}]"
-            lines.append(f"{_base(kind, ros1)}{array} {name}")
-    return "".join(f"{line}\n" for line in lines)
-
-
-def _base(kind: str, ros1: bool) -> str:
-    kind = re.sub(r",\s*\d+$", "", kind)  # this is how bounded sequences are described
-    kind = re.sub(r"^(w?string)<\d+>$", "string", kind).replace("/msg/", "/")
-    if ros1 and kind in _ROS1_BASES:
-        return _ROS1_BASES[kind]
-    return _BASES.get(kind, kind)
-
-
-def _constants(typedef: Mapping[str, Any]) -> Iterator[str]:
-    # rosapi reports their values as texts, together with class attributes that are not constants.
-    pairs = zip(typedef.get("constnames") or (), typedef.get("constvalues") or (), strict=False)
-    for name, value in pairs:
-        if _CONSTANT.fullmatch(name) and name != "SLOT_TYPES" and _INTEGER.fullmatch(str(value)):
-            yield f"int64 {name}={value}"

@@ -1,15 +1,13 @@
-"""The protocol of a rosbridge server without sockets: bytes, fragments, and numbered requests.
+"""The protocol of a rosbridge server without sockets: bytes, and numbered requests.
 
-A connection is a WebSocket, with TLS below it for ``wss``, and fragments above it. Both layers are the state machines
-of ``websockets`` and ``ssl``; they may not run on two threads at a time.
+A connection is a WebSocket, with TLS below it for ``wss``: the state machines of ``websockets`` and ``ssl``, which may not
+run on two threads at a time.
 """
 
 import itertools
-import json
 import ssl
 import time
-from collections import OrderedDict
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import cache
 from typing import Any, Generic, TypeVar
 
@@ -143,63 +141,6 @@ def _system_context() -> ssl.SSLContext:
     return ssl.create_default_context()
 
 
-LONGEST = 4_000_000
-"""Maximum number of characters of a fragment.
-
-Servers accept no message of more than 10 MB (the parameter ``max_message_size``) and close the connection otherwise.
-Even with each character escaped, a fragment is below this limit. Servers send larger messages in fragments, too.
-"""
-OPEN_AT_ONCE = 20
-"""Number of incomplete operations; the oldest is dropped first."""
-
-_numbers = itertools.count(1)
-
-
-def frames(operation: dict[str, Any]) -> Iterator[bytes]:
-    """Convert an operation to one frame or, if it is too long, to several."""
-    text = json.dumps(operation, separators=(",", ":"))
-    if len(text) <= LONGEST:
-        yield text.encode()
-        return
-    number, total = f"fragment:{next(_numbers)}", -(-len(text) // LONGEST)
-    for index in range(total):
-        piece = text[index * LONGEST : (index + 1) * LONGEST]
-        fragment = {"op": "fragment", "id": number, "data": piece, "num": index, "total": total}
-        yield json.dumps(fragment, separators=(",", ":")).encode()
-
-
-class Fragments:
-    """Joins the server's fragments."""
-
-    def __init__(self) -> None:
-        self._open: OrderedDict[str, dict[int, str]] = OrderedDict()
-
-    def add(self, fragment: dict[str, Any]) -> dict[str, Any] | None:
-        """Add a fragment. Return the operation if it was the last one.
-
-        Raises:
-            KeyError, TypeError, ValueError: the fragment is invalid, or the fragments are not an operation.
-        """
-        number, total, index = str(fragment["id"]), int(fragment["total"]), int(fragment["num"])
-        if not isinstance(fragment["data"], str) or not 0 <= index < total:
-            raise ValueError("expected a fragment with a text, and a number below the total")
-        pieces = self._open.setdefault(number, {})
-        pieces[index] = fragment["data"]
-        if len(pieces) < total:
-            while len(self._open) > OPEN_AT_ONCE:
-                self._open.popitem(last=False)
-            return None
-        del self._open[number]
-        operation = json.loads("".join(pieces[each] for each in range(total)))
-        if not isinstance(operation, dict):
-            raise ValueError("the fragments are not an operation")
-        return operation
-
-    def clear(self) -> None:
-        """Forget incomplete operations."""
-        self._open.clear()
-
-
 T = TypeVar("T")
 
 _ABSENT = ("does not exist", "unavailable", "absent from")
@@ -221,16 +162,10 @@ class Requests:
 
     Args:
         send: passes an operation to the link. Returns False if it is lost.
-        ask: sends one and blocks until the answer arrives, as `RosbridgeLink.ask` does.
     """
 
-    def __init__(
-        self,
-        send: Callable[[dict[str, Any]], bool],
-        ask: Callable[[dict[str, Any], float], dict[str, Any] | None],
-    ) -> None:
+    def __init__(self, send: Callable[[dict[str, Any]], bool]) -> None:
         self._send = send
-        self._ask = ask
         self._counter = itertools.count(1)
         self._pending: dict[str, tuple[str, Done]] = {}
         self.interruptions = 0
@@ -248,7 +183,7 @@ class Requests:
         Returns:
             The number with which the call can be dropped.
         """
-        operation = self._operation(service, arguments)
+        operation = self.operation(service, arguments)
         number: str = operation["id"]
         self._pending[number] = (service, done)
         if timeout is not None:
@@ -283,19 +218,8 @@ class Requests:
         if done is not None:
             done(values, problem)
 
-    def call_blocking(self, service: str, arguments: Any, seconds: float) -> dict[str, Any] | None:
-        """Call *service* and block until the answer arrives, in any thread; None if it is a failure.
-
-        Raises:
-            TimeoutError: there is no answer within *seconds*.
-        """
-        answer = self._ask(self._operation(service, arguments), seconds)
-        if answer is None or not answer.get("result", True):
-            return None
-        values = answer.get("values")
-        return values if isinstance(values, dict) else {}
-
-    def _operation(self, service: str, arguments: Any) -> dict[str, Any]:
+    def operation(self, service: str, arguments: Any) -> dict[str, Any]:
+        """Return the operation that calls *service*."""
         number = f"call_service:{service}:{next(self._counter)}"
         return {"op": "call_service", "id": number, "service": service, "args": arguments}
 

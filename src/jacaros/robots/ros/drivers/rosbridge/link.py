@@ -23,7 +23,7 @@ import cbor2
 from websockets.exceptions import WebSocketException
 
 from jacaros.robots.ros.handoff import post
-from jacaros.robots.ros.protocols.rosbridge_wire import Fragments, Wire, address, frames
+from jacaros.robots.ros.protocols.rosbridge_wire import Wire, address
 from jacaros.runtime.errors import UsageError
 
 FIRST_PAUSE, LONGEST_PAUSE, GROWTH = 0.25, 2.0, 1.7
@@ -39,6 +39,10 @@ TRY_AGAIN = 0.002
 LAST_MESSAGE = 0.5
 """Seconds that a thread other than the loop's waits for the network to accept a message: no other thread offers it
 again."""
+LARGEST = 10_000_000
+"""Bytes of a message; servers close the connection at a longer one (their parameter ``max_message_size``)."""
+SENDING, DOING = 0.5, 1.0
+"""Seconds that closing waits for the last messages to leave, and for the server to process them."""
 GOODBYE = 0.5
 """Seconds for the server to close the connection after our close frame."""
 
@@ -137,16 +141,15 @@ class RosbridgeConnection(asyncio.Protocol):
             self._lose()
 
     def wait(
-        self, done: Callable[[], object], seconds: float, on_message: Callable[[bytes, bool], None]
+        self, done: Callable[[], object], seconds: float, on_message: Callable[[bytes, bool], object]
     ) -> None:
         """Block until *done* returns True or the connection is lost.
 
-        If the loop runs in another thread, it reads meanwhile; otherwise this thread blocks it, or it has ended, and
-        this thread reads in its place.
+        The loop reads meanwhile, in its thread; if it has ended, this thread reads in its place.
         """
         deadline = time.monotonic() + seconds
         while not (done() or self.over) and (rest := deadline - time.monotonic()) > 0.0:
-            if self._loop.is_running() and threading.get_ident() != self._home:
+            if self._loop.is_running():
                 time.sleep(min(rest, TRY_AGAIN))
             else:
                 self._read_here(min(rest, 0.1), on_message)
@@ -157,7 +160,7 @@ class RosbridgeConnection(asyncio.Protocol):
             self._output.clear()
             self._socket.close()
 
-    def _read_here(self, seconds: float, on_message: Callable[[bytes, bool], None]) -> None:
+    def _read_here(self, seconds: float, on_message: Callable[[bytes, bool], object]) -> None:
         self._push()
         with selectors.DefaultSelector() as selector:
             selector.register(self._socket, selectors.EVENT_READ)
@@ -174,7 +177,7 @@ class RosbridgeConnection(asyncio.Protocol):
         else:
             self.over = True
 
-    def _take(self, data: bytes, on_message: Callable[[bytes, bool], None]) -> None:
+    def _take(self, data: bytes, on_message: Callable[[bytes, bool], object]) -> None:
         try:
             with self._lock:
                 messages = self._wire.feed(data)
@@ -263,8 +266,8 @@ class RosbridgeLink:
         self._loop: asyncio.AbstractEventLoop | None = None
         self._work: asyncio.Task[None] | None = None
         self._connection: RosbridgeConnection | None = None
-        self._fragments = Fragments()
-        self._awaited: dict[str, dict[str, Any] | None] = {}
+        self._awaited: str | None = None
+        """The id of the last question until its answer has arrived."""
 
     @property
     def up(self) -> bool:
@@ -283,7 +286,7 @@ class RosbridgeLink:
             self._work.cancel()
 
     def send(self, message: dict[str, Any], droppable: bool = False) -> bool:
-        """Send *message*, from any thread. Return False if it is lost because there is no connection.
+        """Send *message*, from any thread. Return False if it is lost: there is no connection, or it is too large.
 
         Args:
             message: an operation of the protocol.
@@ -292,36 +295,21 @@ class RosbridgeLink:
         connection = self._connection
         if connection is None or (droppable and connection.backlog > BACKLOG):
             return False
-        for frame in frames(message):
-            connection.send(frame)
+        frame = json.dumps(message, separators=(",", ":")).encode()
+        if len(frame) > LARGEST:
+            return False
+        connection.send(frame)
         return self._connection is connection
 
-    def ask(self, question: dict[str, Any], seconds: float) -> dict[str, Any] | None:
-        """Send an operation and block, in any thread, until its answer arrives; None if the connection is lost.
-
-        Other messages wait for the loop.
-
-        Raises:
-            TimeoutError: there is no answer within *seconds*.
-        """
-        number = question["id"]
-        self._awaited[number] = None
-        try:
-            connection = self._connection
-            if connection is None or not self.send(question):
-                return None
-            connection.wait(lambda: self._awaited[number], seconds, self._keep_for_loop)
-            if self._awaited[number] is None and not connection.over:
-                raise TimeoutError
-            return self._awaited[number]
-        finally:
-            del self._awaited[number]
-
-    def finish(self, seconds: float) -> None:
-        """Wait until all sent data has left the process, then close; blocks, so it must not run on the loop."""
+    def finish(self, question: dict[str, Any]) -> None:
+        """Send *question*, whose answer shows that everything before it is done, and close; blocks, on any thread but
+        the loop's."""
         connection = self._connection
         if connection is not None:
-            connection.flush(seconds)
+            self._awaited = question["id"]
+            self.send(question)
+            connection.wait(lambda: self._awaited is None, DOING, self._operation)
+            connection.flush(SENDING)
             connection.close()
             connection.wait(lambda: False, GOODBYE, lambda payload, binary: None)
             connection.drop()
@@ -334,21 +322,14 @@ class RosbridgeLink:
         if operation is not None:
             self._on_message(operation)
 
-    def _keep_for_loop(self, payload: bytes, binary: bool) -> None:
-        operation = self._operation(payload, binary)
-        if operation is not None and self._loop is not None:
-            post(self._loop, self._on_message, operation)
-
     def _operation(self, payload: bytes, binary: bool) -> dict[str, Any] | None:
         """Decode a message, JSON or, if binary, CBOR; None if there is nothing for the loop."""
         try:
             message: Any = cbor2.loads(payload) if binary else json.loads(payload)
-            if message["op"] == "fragment":
-                message = self._fragments.add(message)
-            if message is None or not isinstance(message["op"], str):
+            if not isinstance(message["op"], str):
                 return None
-            if self._awaited and message.get("id") in self._awaited:
-                self._awaited[message["id"]] = message
+            if self._awaited is not None and message.get("id") == self._awaited:
+                self._awaited = None
                 return None
         except Exception as problem:
             # An invalid CBOR message may contain dates, fractions, expressions: each raises errors of its own.
@@ -364,7 +345,6 @@ class RosbridgeLink:
             connection = await self._connect()
             if connection is not None:
                 pause = FIRST_PAUSE
-                self._fragments.clear()
                 self._connection = connection
                 self._on_up()
                 # The end of a program may cancel this task before the exit hooks run: they need the connection.

@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 
 from jacaros.robots.ros.backend import Backend
 from jacaros.robots.ros.drivers.rosbridge.link import RosbridgeLink
-from jacaros.robots.ros.errors import CallFailed, CallTimedOut, ServiceError, ServiceUnavailable
+from jacaros.robots.ros.errors import CallTimedOut, ServiceError, ServiceUnavailable
 from jacaros.robots.ros.handoff import post
 from jacaros.robots.ros.lifetime import Lifetime
 from jacaros.robots.ros.names import message_type
@@ -27,16 +27,10 @@ T = TypeVar("T")
 
 FIRST_LOOK = 5.0
 """Seconds that starting waits for the first attempt to connect; a missing server refuses immediately."""
-SENDING = 0.5
-"""Seconds that closing waits for the last messages to leave."""
-DOING = 1.0
-"""Seconds that closing waits until the server has processed the last messages."""
 ATTEMPTS, PAUSE = 6, 0.5
 """Number of requests for the version of ROS, and seconds between them: rosapi may start after the server."""
 SIGN_OF_2 = "/msg/"
 """Part of the names of types on ROS 2 only."""
-FETCHING = 3.0
-"""Seconds that a request for an unknown type may block the loop."""
 CURE = (
     "on the robot, start `ros2 launch rosbridge_server rosbridge_websocket_launch.xml` (ROS 1: `roslaunch rosbridge_server "
     "rosbridge_websocket.launch`), and give its address with --bridge or ROSBRIDGE_URI"
@@ -77,8 +71,8 @@ class BridgeNode(Backend):
     def __init__(self, settings: NodeSettings, url: str) -> None:
         self.url = url
         self._link = RosbridgeLink(self.url, self._link_up, self._link_down, self._received, self._say)
-        self.requests = Requests(self._link.send, self._link.ask)
-        self.schema = BridgeSchema(settings.interface_paths, self._ask_for_type, self._cannot_ask)
+        self.requests = Requests(self._link.send)
+        self.schema = BridgeSchema(settings.interface_paths)
         super().__init__(settings, self.schema, Lifetime(settings.log, self._leave, threaded=True))
         self.translator = Translator(self.schema)
         self.admission = Admission(self)
@@ -87,10 +81,7 @@ class BridgeNode(Backend):
         self.attached = False
         self.packs = False
         self._numbers = itertools.count(1)
-        self._has_rosapi = False
         self._tasks: set[asyncio.Task[None]] = set()
-        self._ended_at = ""
-        """The type at which rosapi crashed."""
         self._lost_topics: set[str] = set()
         self._reported: set[str] = set()
 
@@ -170,7 +161,8 @@ class BridgeNode(Backend):
         if topic not in self._lost_topics:
             self._lost_topics.add(topic)
             self._say(
-                f"topic {topic}: messages are lost: the rosbridge server at {self.url} is away or too slow"
+                f"topic {topic}: messages are lost: the rosbridge server at {self.url} is away or too slow, or does "
+                f"not take messages of this size"
             )
 
     def polled(
@@ -187,10 +179,7 @@ class BridgeNode(Backend):
             CallTimedOut, CallFailed: as `Client.call`.
         """
         self.require_connection(f"/rosapi/{service}")
-        try:
-            return await self._rosapi(service, arguments, timeout)
-        except (ServiceUnavailable, CallTimedOut) as problem:
-            raise type(problem)(f"{problem}{self._loss_of_rosapi()}") from None
+        return await self._rosapi(service, arguments, timeout)
 
     async def _rosapi(self, service: str, arguments: dict[str, Any], timeout: float | None) -> Any:
         answer: asyncio.Future[Any] = self.loop.create_future()
@@ -207,7 +196,6 @@ class BridgeNode(Backend):
 
     def _link_up(self) -> None:
         self._cancel_tasks()
-        self._ended_at = ""
         self._lost_topics.clear()
         self._reported.clear()
         self._begin(self._greet())
@@ -215,12 +203,10 @@ class BridgeNode(Backend):
     async def _greet(self) -> None:
         """Find out the version of ROS, and announce everything to the server."""
         found = await self._ask_for_version()
-        self._has_rosapi = found is not None
-        if not self._has_rosapi:
+        if found is None:
             self.log(
                 f"the rosbridge server at {self.url} has no rosapi node, so the graph cannot be queried; assuming ROS 2; "
-                "its launch file starts both. If rosapi has crashed, as it does at types with bounded arrays, restart it "
-                "and name a folder with the definitions of your types (in a mapping file: interfaces)"
+                "its launch file starts both"
             )
         self.translator.ros_version, self.packs = found or (2, False)
         self.attached = True
@@ -298,48 +284,9 @@ class BridgeNode(Backend):
     def _say(self, text: str) -> None:
         post(self.loop, self.log, text)
 
-    def _ask_for_type(self, service: str, arguments: dict[str, Any]) -> dict[str, Any] | None:
-        answer = None
-        try:
-            answer = self.requests.call_blocking(service, arguments, FETCHING)
-        finally:
-            if answer is None:
-                post(self.loop, self._check_rosapi, str(arguments["type"]))
-        return answer
-
-    def _check_rosapi(self, asked: str) -> None:
-        """Check whether rosapi still runs: real ones crash when they are asked for certain types."""
-        self._begin(self._look_for_rosapi(asked))
-
-    async def _look_for_rosapi(self, asked: str) -> None:
-        try:
-            await self._rosapi("topics", {}, PATIENCE)
-            self._ended_at = ""
-        except (ServiceUnavailable, CallTimedOut) as problem:
-            if self._has_rosapi and not self._ended_at:
-                self._ended_at = asked
-                self.log(f"{problem}{self._loss_of_rosapi()}")
-        except CallFailed:
-            pass  # the link is lost, which is reported elsewhere
-
-    def _loss_of_rosapi(self) -> str:
-        if not self._ended_at:
-            return ""
-        return (
-            f": rosapi crashed when it was asked for the type {self._ended_at}; restart rosapi on the robot, and "
-            "name a folder with the definition of this type (in a mapping file: interfaces)"
-        )
-
-    def _cannot_ask(self) -> str | None:
-        if self.attached:
-            return None
-        return f"no connection to the rosbridge server at {self.url}, which could be asked"
-
     def _leave(self) -> None:
         # A server discards pending operations when its client leaves; an answer shows that all earlier ones are done.
-        with contextlib.suppress(TimeoutError):
-            self.requests.call_blocking("/rosapi/get_time", {}, DOING)
-        self._link.finish(SENDING)
+        self._link.finish(self.requests.operation("/rosapi/get_time", {}))
 
 
 @dataclass(slots=True)
