@@ -12,7 +12,7 @@ from jacaros.artifacts import ArtifactId, Structure, operation
 from jacaros.robots.artifacts.odometry import ArtOdometry
 from jacaros.robots.artifacts.sensors import ArtBaseScan
 from jacaros.robots.artifacts.thesis import ArtTutorial
-from jacaros.robots.kit.reading import LONGEST_WAIT, RangeOfView, Reading
+from jacaros.robots.kit.reading import LONGEST_WAIT, Reading
 from jacaros.robots.kit.ros_artifact import RosArtifact
 from jacaros.robots.streams import ReadingPolicy, Values
 from jacaros.runtime.clock import VirtualClock
@@ -223,55 +223,3 @@ async def test_a_scan_on_demand_expires_too_and_is_defined_by_the_operation(
     assert watcher.holds("laserrange") == [(1, 1, 1, 1, 1)]
     await lab.sleep(1)
     assert watcher.holds("laserrange") == []
-
-
-# The range of view.
-
-
-def test_only_elements_within_reach_of_the_robot_are_in_view() -> None:
-    shown: list[list[Values]] = []
-    view = RangeOfView(2.0, lambda elements, cause: shown.append(elements))
-    cells: list[Values] = [(0, 0, "a"), (2, 0, "b"), (3, 0, "c"), (math.nan, 0, "d")]
-    view.take(cells)
-    assert shown == []
-    view.stand(0, 0)
-    assert shown == [[(0, 0, "a"), (2, 0, "b")]]
-    view.stand(0.005, 0)
-    view.take(list(cells))
-    assert len(shown) == 1
-    view.stand(2.5, 0)
-    assert shown[-1] == [(2, 0, "b"), (3, 0, "c")]
-    view.take([])
-    assert shown[-1] == []
-
-
-class Landmarks(RosArtifact):
-    """Shows the poses of a message that are near the robot."""
-
-    def open(self) -> None:
-        self.view = RangeOfView(2.0, lambda seen, cause: self.start(self.show_elements, "landmark", seen))
-        self.subscription("landmarks", "geometry_msgs/msg/PoseArray", self.take)
-
-    def take(self, sample: Any) -> None:
-        self.view.take([(each.position.x, each.position.y) for each in sample.message.poses])
-
-    @operation
-    def stand(self, x: float, y: float) -> None:
-        """Note where the robot is."""
-        self.view.stand(x, y)
-
-
-@made(Landmarks)
-async def test_elements_in_view_are_properties_and_one_that_stays_gives_no_event(
-    lab: Lab, artifact: ArtifactId, watcher: Watcher
-) -> None:
-    poses = [{"position": {"x": float(x)}} for x in range(5)]
-    lab.say("/landmarks", "geometry_msgs/msg/PoseArray", poses=poses)
-    await lab.sleep(0.1)
-    await lab.do(artifact, "stand", 0, 0)
-    assert watcher.holds("landmark") == [(0, 0), (1, 0), (2, 0)]
-    await lab.do(artifact, "stand", 1, 0)
-    assert watcher.holds("landmark") == [(0, 0), (1, 0), (2, 0), (3, 0)]
-    assert watcher.values("landmark") == [(0, 0), (1, 0), (2, 0), (3, 0)]
-    await lab.do(artifact, "stand", 9, 0)
-    assert watcher.holds("landmark") == []

@@ -8,7 +8,7 @@ from navigator import Navigator, failed, succeeded, suspended
 from robot_lab import Lab
 
 from jacaros.artifacts import Out, Structure
-from jacaros.robots.kit.reading import LONGEST_WAIT, BadMessages, RangeOfView, Reading, Stamps
+from jacaros.robots.kit.reading import LONGEST_WAIT, BadMessages, Reading, Stamps
 from jacaros.robots.map.cells import HIT, OBSTACLE, OccupancyCells
 from jacaros.robots.map.mapper import Localisation
 from jacaros.robots.mapping.decoding import converted
@@ -69,14 +69,6 @@ def test_an_observer_that_never_takes_a_value_up_gets_the_newest_after_the_longe
 
     run(main, clock)
     assert [moment for moment, _ in delivered] == pytest.approx([LONGEST_WAIT, 2 * LONGEST_WAIT], abs=0.25)
-
-
-def test_an_element_at_the_edge_of_the_view_is_in_view() -> None:
-    seen: list[list[Values]] = []
-    view = RangeOfView(1.0, lambda elements, cause: seen.append(elements))
-    view.stand(0.0, 0.0)
-    view.take([(1.0, 0.0), (0.0, -1.0), (1.001, 0.0)])
-    assert seen == [[(1.0, 0.0), (0.0, -1.0)]]
 
 
 async def test_the_time_that_a_server_takes_to_accept_counts_towards_the_timeout(lab: Lab) -> None:

@@ -14,8 +14,6 @@ expire         values are withdrawn after some seconds without a message
 finite         messages with NaN or an infinite number are refused
 =============  ==========================================================================================
 
-`RangeOfView` is for messages with many elements.
-
 Bad messages are counted, reported on the 1st, 10th, 100th, … occurrence, and never acted on. A plan receives
 them as the signal ``bad_message(Topic, Why)``:
 
@@ -42,7 +40,7 @@ is set back, stamps go back too; when messages are late, they do not.
 
 import asyncio
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from jacaros.artifacts.env.values import Structure
@@ -487,54 +485,3 @@ def not_finite(values: Values) -> float | None:
         elif isinstance(value, list | tuple) and (found := not_finite(tuple(value))) is not None:
             return found
     return None
-
-
-MOVED = 0.01
-"""Metres that a robot must move before the elements in view are computed again."""
-
-
-def _position(element: Values) -> tuple[float, float]:
-    x, y = element[:2]
-    assert isinstance(x, int | float)
-    assert isinstance(y, int | float)
-    return float(x), float(y)
-
-
-class RangeOfView:
-    """The elements of the newest message within a range of the robot; their first two values are x and y in metres.
-
-    Until the robot's position is known, nothing is in view.
-
-    Args:
-        reach: metres, inclusive.
-        show: called with the elements in view, in the order of the message, whenever they change.
-    """
-
-    def __init__(self, reach: float, show: Callable[[list[Values], Cause | None], None]) -> None:
-        self._reach, self._show = reach, show
-        self._elements: list[tuple[float, float, Values]] = []
-        self._here: tuple[float, float] | None = None
-        self._shown: list[Values] = []
-
-    def take(self, elements: Iterable[Values], cause: Cause | None = None) -> None:
-        """Take the elements of a message; an element whose position is not finite is never in view."""
-        self._elements = [(*_position(each), each) for each in elements]
-        self._look(cause)
-
-    def stand(self, x: float, y: float, cause: Cause | None = None) -> None:
-        """Update the position of the robot."""
-        before = self._here
-        if before is None or math.dist(before, (x, y)) > MOVED:
-            self._here = (x, y)
-            self._look(cause)
-
-    def _look(self, cause: Cause | None) -> None:
-        if self._here is None:
-            return
-        here_x, here_y = self._here
-        seen = [
-            element for x, y, element in self._elements if math.hypot(x - here_x, y - here_y) <= self._reach
-        ]
-        if seen != self._shown:
-            self._shown = seen
-            self._show(seen, cause)

@@ -462,7 +462,7 @@ class RosArtifact(Artifact):
 
     @internal_operation
     def show_elements(self, name: str, elements: object, arity: int | None = None) -> None:
-        """Show one property *name* for each tuple of values, and remove the others; see `RangeOfView`.
+        """Show one property *name* for each tuple of values, and remove the others.
 
         An element that was already shown causes no event.
 

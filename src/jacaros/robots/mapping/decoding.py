@@ -29,7 +29,7 @@ from jacaros.robots.mapping.interfaces import (
     getter,
     tried,
 )
-from jacaros.robots.mapping.properties import TopicPart, ViewPart
+from jacaros.robots.mapping.properties import TopicPart
 from jacaros.robots.plane.pose import pitch_of, roll_of, yaw_of
 from jacaros.robots.ros.errors import UnknownInterface
 from jacaros.robots.ros.fields import FLOATS, INTEGER_RANGES, FieldType
@@ -488,13 +488,11 @@ class ValueRow:
         key: identifies an element; None if there is one row.
         values: in the order of the fields.
         annotations: annotations of the belief.
-        place: position of the element, for the range of view.
     """
 
     key: object
     values: tuple[object, ...]
     annotations: tuple[object, ...] = ()
-    place: tuple[float, float] = (0.0, 0.0)
 
 
 FRAME = read_path("header.frame_id")
@@ -516,10 +514,6 @@ def fields_of(part: TopicPart, root: FieldType, interfaces: Interfaces) -> tuple
         return (FieldPart(WHOLE, part.place, name="value"),)
     names = interfaces.fields(root.base)
     return tuple(FieldPart(read_path(name), part.place, name=name) for name in names)
-
-
-View = Callable[[Any, Any, int], tuple[float, float] | None]
-"""Returns the position of an element, as `Read` does its values; None if it is certainly out of view."""
 
 
 def extractor(
@@ -559,13 +553,10 @@ class _Maker:
         notes = [
             (field.name, take) for field in part.annotations if (take := self._reader(field)) is not None
         ]
-        view = self._view(part.view) if part.view is not None else None
         if part.each is None:
-            return _single(takes, notes, view)
+            return _single(takes, notes)
         field = part.key or (fields[0] if fields else None)
-        return _several(
-            getter(part.each), takes, notes, view, self._reader(field) if field is not None else None
-        )
+        return _several(getter(part.each), takes, notes, self._reader(field) if field is not None else None)
 
     def _element(self) -> FieldType:
         each = self.part.each
@@ -585,63 +576,21 @@ class _Maker:
     def _reader(self, field: FieldPart) -> Read | None:
         return tried(field.place, self.problems, reader, field, self.message, self.element, self.interfaces)
 
-    def _view(self, view: ViewPart) -> View:
-        """Return a function that gives the position of an element; None if it is certainly out of view."""
-        if view.distance is not None:
-            far = self._number(view.distance, view)
-            return lambda whole, part, i: (0.0, 0.0) if far(whole, part, i) <= view.metres else None
-        if len(view.at) != 2:  # the reader has reported it
-            return lambda whole, part, i: None
-        across, along = (self._number(path, view) for path in view.at)
-        return lambda whole, part, i: (across(whole, part, i), along(whole, part, i))
 
-    def _number(self, path: FieldPath, view: ViewPart) -> Callable[[Any, Any, int], float]:
-        from_message = self.element is None or path.of_message
-        root = self.message if self.element is None or path.of_message else self.element
-
-        def check() -> None:
-            leaf = follow(path, root, self.interfaces.fields)
-            if leaf.array or path.lists or leaf.base not in (*FLOATS, *INTEGER_RANGES):
-                raise WrongPath(f"`range_of_view` needs numbers, but `{path.text}` is {leaf}")
-
-        tried(view.place, self.problems, check)
-        get: Getter = getter(path)
-
-        def number(whole: Any, part: Any, i: int) -> float:
-            try:
-                return float(get(whole if from_message else part, i))
-            except IndexError:  # no element there, so none is near
-                return math.nan
-
-        return number
-
-
-def _single(takes: list[Read], notes: list[tuple[str, Read]], view: View | None) -> Extract:
+def _single(takes: list[Read], notes: list[tuple[str, Read]]) -> Extract:
     def rows(message: Any) -> list[ValueRow]:
-        place = view(message, message, 0) if view is not None else (0.0, 0.0)
-        if place is None or not all(map(math.isfinite, place)):
-            return []
-        return [
-            ValueRow(None, _row_values(takes, message, message, 0), _noted(notes, message, message, 0), place)
-        ]
+        return [ValueRow(None, _row_values(takes, message, message, 0), _noted(notes, message, message, 0))]
 
     return rows
 
 
-def _several(
-    get: Getter, takes: list[Read], notes: list[tuple[str, Read]], view: View | None, key: Read | None
-) -> Extract:
+def _several(get: Getter, takes: list[Read], notes: list[tuple[str, Read]], key: Read | None) -> Extract:
     def rows(message: Any) -> list[ValueRow]:
         found = []
         for place, element in enumerate(get(message, 0)):
-            at = view(message, element, place) if view is not None else (0.0, 0.0)
-            if at is None or not all(map(math.isfinite, at)):
-                continue
+            named = _hashable(key(message, element, place)) if key else place
             values = _row_values(takes, message, element, place)
-            told = _noted(notes, message, element, place)
-            found.append(
-                ValueRow(_hashable(key(message, element, place)) if key else place, values, told, at)
-            )
+            found.append(ValueRow(named, values, _noted(notes, message, element, place)))
         return found
 
     return rows

@@ -20,7 +20,7 @@ JUMP = 0.1
 class Derivation:
     """A derived property.
 
-    It receives every message of its streams, before dead bands, rates and the range of view apply.
+    It receives every message of its streams, before dead bands and rates apply.
 
     Args:
         host: the artifact.

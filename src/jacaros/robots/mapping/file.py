@@ -385,7 +385,7 @@ def _perceived(mapping: MappingFile) -> set[str]:
 
 
 def _references(part: ArtifactPart) -> Iterator[Problem]:
-    """Yield unknown properties in operations and ranges of view, and properties on demand without an operation that
+    """Yield unknown properties in operations, and properties on demand without an operation that
     requests them."""
     own: dict[str, TopicPart | None] = {each.name: each for each in part.properties}
     own |= {each.name: None for each in part.frames}
@@ -406,9 +406,6 @@ def _references(part: ArtifactPart) -> Iterator[Problem]:
                 text = f"the number of values of `{wanted.text}` is not known"
                 yield wanted.place.problem(text, f"give `{wanted.text}` fields")
     for topic in part.topics:
-        if topic.view is not None and (origin := topic.view.origin) is not None and origin.text not in own:
-            text = f"unknown property `{origin.text}`"
-            yield origin.place.problem(text, f"properties from topics and frames: {told}")
         if topic.policy.on_demand and topic.name not in asked:
             text = f"no operation requests `{topic.name}`, which is updated on demand"
             yield topic.place.problem(text, f"add an operation: look: {{refresh: {topic.name}}}")

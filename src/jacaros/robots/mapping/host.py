@@ -40,7 +40,6 @@ class MappingHost(RosArtifact):
         self.taps: dict[str, list[Tap]] = {}
         self._reported: set[object] = set()
         self._notes: dict[str, tuple[object, ...]] = {}
-        self._followers: dict[str, list[Callable[[Values], None]]] = {}
         self._show_values = self._show_noted
 
     @property
@@ -77,19 +76,13 @@ class MappingHost(RosArtifact):
         if notes or name in self._notes:
             self._notes[name] = notes
 
-    def follow_property(self, name: str, follower: Callable[[Values], None]) -> None:
-        """Call *follower* with the values of the property *name* whenever it is shown."""
-        self._followers.setdefault(name, []).append(follower)
-
     def _show_noted(self, name: str, values: Values) -> None:
-        """Show values with the annotations of their property, and to its followers."""
+        """Show values with the annotations of their property."""
         notes = self._notes.get(name)
         if self.has_property(name):
             self.update_property(name, *values, annotations=notes)
         else:
             self.define_property(name, *values, annotations=notes)
-        for follower in self._followers.get(name, ()):
-            follower(values)
 
     @internal_operation
     def show_property(self, name: str, show: object) -> None:

@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any
 
 from jacaros.artifacts.env.values import Structure
-from jacaros.robots.kit.reading import BadMessages, RangeOfView, Reading, Stamps
+from jacaros.robots.kit.reading import BadMessages, Reading, Stamps
 from jacaros.robots.mapping.decoding import Extract, Unshowable, ValueRow, extractor, perceived
 from jacaros.robots.mapping.deriving import stamp_of
 from jacaros.robots.mapping.host import LOOK, MappingHost, type_in
@@ -136,28 +136,12 @@ class Updater:
         self._latched = False
         self._frame = host.frame(part.frame.text) if part.frame is not None else None
         if part.signal:
-            show = Signals(host, part).take
+            self._take_rows: Show = Signals(host, part).take
         elif part.each is not None:
-            show = Elements(host, part).take
+            self._take_rows = Elements(host, part).take
         else:
             self._reading = host.reading_of(part.name, part.policy, *map(perceived, part.initial or ()))
-            show = partial(self._show, self._reading)
-        self._take_rows = self._in_view(show)
-
-    def _in_view(self, show: Show) -> Show:
-        """Return what takes the rows of a message, and shows those in the range of view."""
-        view = self.part.view
-        if view is None or view.distance is not None:
-            return show
-        seen = RangeOfView(
-            view.metres,
-            lambda rows, cause: show([row for *_, row in rows if isinstance(row, ValueRow)], cause),
-        )
-        if view.origin is None:
-            seen.stand(0.0, 0.0)
-        else:
-            self._host.follow_property(view.origin.text, partial(_stand, seen))
-        return lambda rows, cause: seen.take([(*row.place, row) for row in rows], cause)
+            self._take_rows = partial(self._show, self._reading)
 
     @property
     def is_state(self) -> bool:
@@ -202,11 +186,8 @@ class Updater:
         self._take_rows(rows, cause)
 
     def _show(self, reading: Reading, rows: list[ValueRow], cause: Cause | None) -> None:
-        if rows:
-            self._host.annotate(self.part.name, rows[0].annotations)
-            reading.take(rows[0].values, cause)
-        else:
-            reading.withdraw()
+        self._host.annotate(self.part.name, rows[0].annotations)
+        reading.take(rows[0].values, cause)
 
     def withdraw(self) -> None:
         """Remove the property."""
@@ -221,13 +202,6 @@ class Updater:
         if self._faults is None:
             self._faults = BadMessages(topic, lambda why, _: host.start(host.report_bad_message, topic, why))
         self._faults.add(Structure(error.functor, (error.path,)), str(error))
-
-
-def _stand(view: RangeOfView, values: tuple[object, ...]) -> None:
-    """Use the position in a property as origin."""
-    x, y = (*values, 0, 0)[:2]
-    if isinstance(x, int | float) and isinstance(y, int | float):
-        view.stand(float(x), float(y))
 
 
 class Signals:

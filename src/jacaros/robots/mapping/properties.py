@@ -88,43 +88,6 @@ def read_annotations(node: YamlNode) -> tuple[FieldPart, ...]:
     return tuple(replace(read_field(value), name=belief_name(name)) for name, value in node.entries())
 
 
-def _coordinates(node: YamlNode) -> tuple[FieldPath, ...]:
-    at = tuple(path_of(item) for item in node.sequence())
-    if len(at) != 2:
-        node.wrong("`at` must be the paths of two coordinates", "write [position.x, position.y]")
-        return ()
-    return at
-
-
-@dataclass(frozen=True, slots=True)
-class ViewPart:
-    """The range within which elements are shown.
-
-    Attributes:
-        metres: maximum distance.
-        distance: path of the distance; empty if positions are given.
-        at: paths of the position's coordinates x and y.
-        origin: the property whose first values are the origin; None: the robot itself.
-    """
-
-    place: FilePosition
-    metres: Annotated[float, entry(positive)] = 1.0
-    distance: Annotated[FieldPath | None, entry(path_of)] = None
-    at: Annotated[tuple[FieldPath, ...], entry(_coordinates)] = ()
-    origin: Annotated[Written | None, entry(written, "from")] = None
-
-
-def _view(node: YamlNode) -> ViewPart:
-    entries = node.mapping("metres", "distance", "at", "from", required=("metres",))
-    if isinstance(node.value, dict):
-        if "distance" in entries and ("at" in entries or "from" in entries):
-            node.wrong("`distance` and `at` are alternatives", "remove one of them")
-        if "distance" not in entries and "at" not in entries:
-            text = "`range_of_view` needs a position"
-            node.wrong(text, "add `at: [position.x, position.y]`, or `distance: range`")
-    return with_entries(ViewPart(place_of(node)), entries)
-
-
 ALWAYS = ReadingPolicy()
 """Every change is published."""
 
@@ -158,14 +121,13 @@ class TopicPart:
     description: Annotated[str, entry(YamlNode.text)] = ""
     policy: ReadingPolicy = ALWAYS
     initial: tuple[object, ...] | None = None
-    view: Annotated[ViewPart | None, entry(_view, "range_of_view")] = None
     when_changed: Annotated[bool, entry(YamlNode.truth)] = False
     signal: bool = False
 
 
 _MESSAGE = ("topic", "type", "frame", "fields", "each", "key", "annotations", "qos", "description")
 _POLICY = ("mode", "rate", "dead_band", "latest_only", "expire")
-PROPERTY = (*_MESSAGE, *_POLICY, "initial", "range_of_view")
+PROPERTY = (*_MESSAGE, *_POLICY, "initial")
 SIGNAL = (*_MESSAGE, "rate", "when_changed")
 FEEDBACK = ("fields", "annotations", "description", "rate", "dead_band", "latest_only")
 

@@ -198,47 +198,6 @@ async def test_dead_band_of_elements(lab: Lab) -> None:
     assert t.held == [("left", 1), ("right", 3)]
 
 
-POSES = """
-properties:
-  here: {topic: p, type: geometry_msgs/msg/Point, fields: [x, y]}
-  a:
-    topic: seen
-    type: geometry_msgs/msg/PoseArray
-    each: poses
-    fields: [position.x, position.y]
-    range_of_view: {metres: 2, at: [position.x, position.y]FROM}
-"""
-
-
-async def seen(t: Talk, *xs: float) -> None:
-    await t.say("seen", "geometry_msgs/msg/PoseArray", poses=[{"position": {"x": x}} for x in xs])
-
-
-async def test_only_what_is_near_the_robot_is_in_view(lab: Lab) -> None:
-    t = await talk(lab, POSES.replace("FROM", ""))
-    await seen(t, 1, 2, 3)
-    assert t.held == [(1, 0), (2, 0)]
-
-
-async def test_the_view_moves_with_a_property(lab: Lab) -> None:
-    t = await talk(lab, POSES.replace("FROM", ", from: here"))
-    await seen(t, 1, 4, 9)
-    assert t.held == []
-    await t.say("p", POINT, x=5)
-    assert t.held == [(4, 0)]
-    await t.say("p", POINT, x=8)
-    assert t.held == [(9, 0)]
-
-
-async def test_the_view_by_a_distance(lab: Lab) -> None:
-    view = "range_of_view: {metres: 1, distance: range}"
-    text = f"properties: {{a: {{topic: r, type: sensor_msgs/msg/Range, fields: range, {view}}}}}"
-    t = await talk(lab, text)
-    for distance in (0.5, 2, 0.75):
-        await t.say("r", "sensor_msgs/msg/Range", range=distance)
-        assert t.held == ([] if distance == 2 else [(distance,)])
-
-
 PART = "{topic: j, type: sensor_msgs/msg/JointState, each: name, fields: [., '/position[i]'], when_changed: true}"
 
 
@@ -459,16 +418,6 @@ async def test_a_missing_element_is_reported_with_help(lab: Lab) -> None:
     await t.say("h", "nav_msgs/msg/Path")
     assert '  = help: write a replacement: {path: "ranges[0]", otherwise: 0}' in t.told
     assert "  = help: read the list, or an element that always exists" in t.told
-
-
-async def test_what_has_no_place_is_out_of_view(lab: Lab) -> None:
-    view = 'range_of_view: {metres: 3, distance: "ranges[1]"}'
-    t = await talk(lab, f"properties: {{a: {{topic: s, type: {SCAN}, fields: [range_max], {view}}}}}")
-    await t.scan(ranges=[1.0], range_max=1.0)
-    assert t.held == []
-    await t.scan(ranges=[1.0, 2.0], range_max=2.0)
-    assert t.held == [(2.0,)]
-    assert t.lab.logged == []
 
 
 async def test_a_property_does_not_go_back_in_time_but_signals_are_sent(lab: Lab) -> None:

@@ -122,8 +122,6 @@ properties: {a: {topic: t, rate: 0}}
   1:34: 'rate' is 0, but must be above zero | leave 'rate' out, or write a number
 connected: yes\nproperties: {a: t}
   1:12: `connected` must be true, false, or a number of seconds above zero | write true
-properties: {a: {topic: t, range_of_view: 3}}
-  1:43: 'range_of_view' must be a mapping of keys to values | keys: metres, distance, at, from
 artifacts: {a: {}}\nproperties: {b: t}
   2:1: `properties` is on the same level as `artifacts` | indent it, below the name of an artifact
 operations: {say: {parameters: [words], publish: t, fields: {data: words}}}
@@ -158,12 +156,6 @@ properties: {a: {topic: t, fields: ['x[i]']}}
 properties: {a: {topic: t, qos: fast}}
   1:33: unknown QoS profile 'fast' | write sensor_data, default, latched, or {reliability: ..., durability: ...,
   depth: ..., deadline: ...}
-properties: {a: {topic: t, range_of_view: {metres: 3}}}
-  1:43: `range_of_view` needs a position | add `at: [position.x, position.y]`, or `distance: range`
-properties: {a: {topic: t, range_of_view: {metres: 3, at: [x]}}}
-  1:59: `at` must be the paths of two coordinates | write [position.x, position.y]
-properties: {a: {topic: t, range_of_view: {metres: 3, at: [x, y], from: pose}}}
-  1:73: unknown property `pose` | properties from topics and frames: a
 frames: {a: {target: map}}
   1:13: 'a' lacks the key 'source' | add 'source: ...'
 frames: {a: {target: map, source: s, fields: [x, w]}}

@@ -47,8 +47,6 @@ TWIST fields: {linear.x: {value: $v, unit: degrees}}
   1:98: messages have `linear.x` in m/s, but degrees is a unit of angle | units of speed are metres_per_second,
 TWIST fields: {linear: [1, 2, 3], linear.x: $v}
   1:117: `linear.x` is part of `linear` on line 1 | leave one of them out
-ODOMETRY range_of_view: {metres: 3, at: [pose.x, pose.y]}
-  1:72: `pose.x`: geometry_msgs/msg/PoseWithCovariance has no field `x`
 properties: {a: {topic: t, type: std_msgs/msg/String, frame: odom}}
   1:62: `frame` is for messages with a header, but std_msgs/msg/String has none | leave it out
 ODOMETRY fields: [pose.pose.position.x.y]
@@ -81,8 +79,6 @@ BATTERY fields: {path: present, as: name}
   power_supply_health_unknown}
 BATTERY each: percentage
   1:70: `each` is for arrays, but `percentage` is float32 |
-BATTERY range_of_view: {metres: 1, distance: location}
-  1:79: `range_of_view` needs numbers, but `location` is string |
 properties: {a: {topic: t, type: geometry_msgs/msg/Point, dead_band: [1]}}
   1:14: `dead_band` has 1 values, but geometry_msgs/msg/Point has 3 fields |
 TWIST fields: {linear.w: 1}
