@@ -6,9 +6,8 @@ from fake_actions import FakeServer
 from robot_lab import Lab, Run
 
 from jacaros.artifacts import Out, internal_operation, operation
-from jacaros.robots.kit.options import number, positive
+from jacaros.robots.kit.options import positive
 from jacaros.robots.kit.ros_artifact import RosArtifact
-from jacaros.robots.ros.errors import CallTimedOut
 
 ACTION = "nav2_msgs/action/NavigateToPose"
 
@@ -16,17 +15,11 @@ ACTION = "nav2_msgs/action/NavigateToPose"
 class Navigator(RosArtifact):
     """Drives by an action, in all ways that there are."""
 
-    known_options: ClassVar = {
-        "timeout": positive,
-        "refuse_pause": number,
-        "mute_pause": number,
-        "refuse_resume": number,
-    }
+    known_options: ClassVar = {"timeout": positive}
 
     def open(self) -> None:
         self.define_property("distance", -1)
         self.goer = self.action_client("go", ACTION)
-        self.calls: list[str] = []
 
     @property
     def limit(self) -> Any:
@@ -61,34 +54,10 @@ class Navigator(RosArtifact):
         for x in range(times):
             await self.act(self.goer, {"x": x}, suspend="cancel")
 
-    @operation(name="goOrWait", pausable=True)
-    async def go_or_wait(self, x: float) -> None:
-        """Drive; paused while suspended."""
-        await self.act(
-            self.goer, {"x": x}, timeout=self.limit, suspend="pause", pause=self._pause, resume=self._resume
-        )
-
-    async def _pause(self) -> None:
-        self.log("pause")
-        if "refuse_pause" in self.options:
-            raise RuntimeError("no brakes")
-        if "mute_pause" in self.options:
-            raise CallTimedOut("no answer")
-
-    def _resume(self) -> None:
-        self.log("resume")
-        if "refuse_resume" in self.options:
-            raise RuntimeError("no fuel")
-
     @operation
     async def careless(self) -> None:
         """Request cancellation without a pausable operation."""
         await self.act(self.goer, {}, suspend="cancel")
-
-    @operation(pausable=True)
-    async def helpless(self) -> None:
-        """Want to pause without knowing how."""
-        await self.act(self.goer, {}, suspend="pause")
 
     @operation
     async def send(self, goal: Any) -> None:

@@ -4,7 +4,7 @@ import math
 
 import pytest
 from fake_actions import FakeServer
-from navigator import Navigator, failed, succeeded, suspended
+from navigator import Navigator, failed
 from robot_lab import Lab
 
 from jacaros.artifacts import Out, Structure
@@ -78,19 +78,6 @@ async def test_the_time_that_a_server_takes_to_accept_counts_towards_the_timeout
     going = lab.begin(artifact, "go", 3, Out())
     await failed(going, "timeout(3)")
     assert lab.clock.elapsed == pytest.approx(3.0, abs=0.05)
-
-
-@pytest.mark.parametrize(("option", "resumes"), [("mute_pause", 1), ("refuse_pause", 0)])
-async def test_a_server_that_may_be_paused_is_resumed_and_one_that_refused_is_not(
-    lab: Lab, option: str, resumes: int
-) -> None:
-    server, going = await suspended(lab, "goOrWait", Structure(option, (1,)))
-    await lab.sleep(1)
-    going.execution.resume()
-    await lab.sleep(1)
-    server.goals[1].end()
-    await succeeded(going)
-    assert sum(line.endswith("] resume") for line in lab.logged) == resumes
 
 
 def test_a_conversion_of_units_is_followed_by_scale_and_offset() -> None:

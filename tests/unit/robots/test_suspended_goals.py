@@ -1,4 +1,4 @@
-"""Operations over actions while their intention is suspended: they go on, are cancelled, or are paused at the server."""
+"""Operations over actions while their intention is suspended: they go on, or are cancelled."""
 
 import pytest
 from fake_actions import FakeServer
@@ -107,48 +107,18 @@ async def test_suspended_before_it_begins_nothing_is_sent(lab: Lab) -> None:
 
 
 async def test_dropped_while_suspended(lab: Lab) -> None:
-    server = FakeServer(lab)
-    artifact = await lab.make(Navigator)
-    for operation_name in ("goOrRest", "goOrWait"):
-        going = lab.begin(artifact, operation_name, 3)
-        await lab.sleep(1)
-        await going.pause(1)
-        await going.drop(1)
-        assert going.execution.ended
-        assert server.goals[-1].over
-    assert len(server.goals) == 2
-
-
-async def test_paused_and_resumed_at_the_server(lab: Lab) -> None:
-    server, going = await begun(lab, "goOrWait", Structure("timeout", (5,)), after=0)
-    for _ in range(2):
-        await lab.sleep(1)
-        await going.pause(10)
-        going.execution.resume()
+    server, going = await suspended(lab, "goOrRest")
     await lab.sleep(1)
-    server.goals[0].end()
-    await succeeded(going)
-    assert [line.partition("] ")[2] for line in lab.logged] == ["pause", "resume"] * 2
-    assert len(server.goals) == 1
+    await going.drop(1)
+    assert going.execution.ended
+    assert [goal.over for goal in server.goals] == [True]
 
 
-async def test_a_goal_that_cannot_be_paused_is_cancelled_and_sent_again(lab: Lab) -> None:
-    server, going = await suspended(lab, "goOrWait", Structure("refuse_pause", (1,)))
-    await lab.sleep(2)
-    assert server.told == ["accepted 0", "cancel 0", "canceled 0"]
-    assert any("could not be paused: RuntimeError: no brakes" in line for line in lab.logged)
-    await end_second(lab, server, going, after=1)
-
-
-@pytest.mark.parametrize(
-    ("name", "told"), [("careless", "pausable=True"), ("helpless", "pause=... and resume=...")]
-)
-async def test_what_cannot_work_is_said_before_anything_is_sent(lab: Lab, name: str, told: str) -> None:
+async def test_what_cannot_work_is_said_before_anything_is_sent(lab: Lab) -> None:
     server = FakeServer(lab)
-    artifact = await lab.make(Navigator)
-    ended = await lab.call(artifact, name)
+    ended = await lab.call(await lab.make(Navigator), "careless")
     assert not ended.ok
-    assert any(told in line for line in lab.logged), lab.logged
+    assert any("pausable=True" in line for line in lab.logged), lab.logged
     assert server.goals == []
 
 
@@ -183,50 +153,6 @@ async def test_a_goal_that_the_server_does_not_cancel_continues_and_is_logged_an
     await succeeded(going)
     assert watcher.values("distance") == [(-1,), (8,)]
     assert "[a5] the goal of action /go continues although its intention is suspended" in lab.logged
-
-
-def switched(lab: Lab) -> list[str]:
-    """What the server was asked."""
-    return [line.partition("] ")[2] for line in lab.logged if "could not" not in line]
-
-
-async def test_a_paused_server_is_resumed_after_its_dropped_goal_has_ended(lab: Lab) -> None:
-    server, going = await suspended(lab, "goOrWait", ending=2.0)
-    await lab.sleep(1)
-    await going.drop(1)
-    assert switched(lab) == ["pause"], "it would drive on before it is cancelled"
-    await lab.sleep(2)
-    assert server.goals[0].over
-    assert switched(lab) == ["pause", "resume"]
-
-
-async def test_a_paused_server_is_resumed_after_its_goal_has_ended(lab: Lab) -> None:
-    server, going = await suspended(lab, "goOrWait")
-    await lab.sleep(1)
-    server.goals[0].end(GoalStatus.ABORTED, "lost the way", error_code=7)
-    await failed(going, 'aborted(7,"lost the way")')
-    assert switched(lab) == ["pause", "resume"]
-
-
-async def test_a_possibly_paused_server_is_resumed_before_the_goal_is_sent_again(lab: Lab) -> None:
-    server, going = await suspended(lab, "goOrWait", Structure("mute_pause", (1,)))
-    await lab.sleep(1)
-    assert server.goals[0].over
-    going.execution.resume()
-    await lab.sleep(1)
-    assert switched(lab) == ["pause", "resume"]
-    server.goals[1].end()
-    await succeeded(going)
-
-
-async def test_a_server_that_cannot_be_resumed_has_its_goal_cancelled(lab: Lab) -> None:
-    server, going = await suspended(lab, "goOrWait", Structure("refuse_resume", (1,)))
-    await lab.sleep(1)
-    going.execution.resume()
-    assert "cannot resume the goal" in await failed(going, "canceled")
-    await lab.sleep(1)
-    assert server.goals[0].over
-    assert switched(lab) == ["pause", "resume", "resume"], "once more when the goal has ended"
 
 
 async def test_an_operation_with_many_goals_is_notified_of_pauses_once(lab: Lab) -> None:

@@ -6,8 +6,7 @@ A goal that does not succeed ends with one of six reasons, which a plan receives
 R                     meaning
 ====================  ==============================================================================================
 rejected              the server rejected the goal; the robot has done nothing
-aborted(Code,Text)    the server aborted the goal: the result's ``error_code`` (0 if it has none) and its error text;
-                      `GoalOptions.aborted` can supply another code, and further arguments
+aborted(Code,Text)    the server aborted the goal: the result's ``error_code`` (0 if it has none) and its error text
 canceled              another client cancelled the goal
 timeout(S)            the goal took longer than S seconds, and was cancelled
 server_unavailable    no server offered the action within 5 s; the robot has done nothing
@@ -17,7 +16,7 @@ server_lost           the server disappeared during the goal; it is unknown whet
 
 import asyncio
 import math
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, TypeVar
 
@@ -29,12 +28,9 @@ from jacaros.runtime.clock import Clock
 
 T = TypeVar("T")
 
-Suspending = Literal["go_on", "cancel", "pause"]
-"""Effect of suspending the intention on its goal: the goal continues; it is cancelled, and sent again on ``.resume``;
-or it is paused."""
-
-Switch = Callable[[], Awaitable[object] | None]
-"""Pause or resume a goal, for instance by calling a service. Runs outside of all operations."""
+Suspending = Literal["go_on", "cancel"]
+"""Effect of suspending the intention on its goal: the goal continues; or it is cancelled, and sent again on
+``.resume``."""
 
 ACCEPTANCE = 5.0
 """Seconds to wait for the server to appear and to accept a goal."""
@@ -54,23 +50,18 @@ class GoalOptions:
     """How a goal runs.
 
     Attributes:
-        timeout: seconds that the goal may take in total; None: no limit. Time during which it is cancelled or paused
-            because its intention is suspended does not count.
+        timeout: seconds that the goal may take in total; None: no limit. Time during which it is cancelled because its
+            intention is suspended does not count.
         on_feedback: called on the loop with each feedback message while the goal is active.
         under_way: called with True when a goal is sent, and with False when it ends or its operation no longer needs
             it.
         suspend: effect of suspending the intention on the goal.
-        pause, resume: pause the goal at its server, and resume it; for ``suspend="pause"``.
-        aborted: computes Code, and what follows Text in ``aborted(Code,Text)``, from the result of an aborted goal.
     """
 
     timeout: float | None = None
     on_feedback: Callable[[Any], None] | None = None
     under_way: Callable[[bool], None] | None = None
     suspend: Suspending = "go_on"
-    pause: Switch | None = None
-    resume: Switch | None = None
-    aborted: "Callable[[Any], tuple[object, ...]] | None" = None
 
 
 class GoalRunner:
@@ -90,7 +81,7 @@ class GoalRunner:
         self._clock, self._execution = artifact.clock, artifact.current
         self._log, self._fail = artifact.log, artifact.fail
         self._used = self._limit = 0.0
-        self._heeded = self._held = False
+        self._heeded = False
         self._wake: asyncio.Future[None] | None = None
 
     async def run(self) -> Any:
@@ -106,7 +97,6 @@ class GoalRunner:
             while True:
                 if forget is not None:
                     await self._execution.resumed()
-                    await self._release()
                 outcome = await self._once()
                 if outcome is not None:
                     return self._result(outcome)
@@ -153,11 +143,9 @@ class GoalRunner:
     async def _follow_to_the_end(self, handle: GoalHandle) -> GoalOutcome | None:
         ending = asyncio.ensure_future(handle.outcome())
         try:
-            outcome = await self._follow(handle, ending)
-            await self._release()
-            return outcome
+            return await self._follow(handle, ending)
         except BaseException:
-            handle.abandon(self._release)
+            handle.abandon()
             raise
         finally:
             _forget(ending)
@@ -191,9 +179,7 @@ class GoalRunner:
         timeout = self._options.timeout
         while not ending.done():
             if self._paused:
-                if self._options.suspend == "pause" and await self._is_held():
-                    await self._rest(ending)
-                elif await self._is_cancelled(handle, ending):
+                if await self._is_cancelled(handle, ending):
                     return None
                 continue
             began = self._clock.elapsed
@@ -203,11 +189,6 @@ class GoalRunner:
                 text = f"action {self._client.name} did not end within {timeout:g} s"
                 self._fail(text, "timeout", _figure(timeout))
         return ending.result()
-
-    async def _rest(self, ending: "asyncio.Future[GoalOutcome]") -> None:
-        await self._resumed_or(ending, None)
-        if not ending.done() and not await self._release():
-            self._fail(f"cannot resume the goal of action {self._client.name}", "canceled")
 
     async def _is_cancelled(self, handle: GoalHandle, ending: "asyncio.Future[GoalOutcome]") -> bool:
         """Cancel the goal of a suspended intention. Return False if it succeeds meanwhile or continues.
@@ -244,34 +225,6 @@ class GoalRunner:
         finally:
             _forget(resumed)
 
-    async def _is_held(self) -> bool:
-        """Pause the goal at its server. Return False if that failed."""
-        self._held = True
-        problem = await self._switch(self._options.pause, "paused")
-        # The server may have paused even if it did not answer.
-        self._held = problem is None or isinstance(problem, CallTimedOut)
-        return problem is None
-
-    async def _release(self) -> bool:
-        """Resume a paused server, for this goal or for the goals of other clients. Return False if that failed."""
-        if self._held:
-            self._held = await self._switch(self._options.resume, "resumed") is not None
-        return not self._held
-
-    async def _switch(self, switch: Switch | None, what: str) -> Exception | None:
-        """Pause or resume the server. Return the error, if any."""
-        assert switch is not None
-        try:
-            waiting = switch()
-            if waiting is not None:
-                await waiting
-        except Exception as error:  # whatever user code raises, the robot must not keep moving because of it
-            self._log(
-                f"the goal of action {self._client.name} could not be {what}: {type(error).__name__}: {error}"
-            )
-            return error
-        return None
-
     async def _first_of(self, future: "asyncio.Future[Any]", seconds: float | None) -> None:
         """Wait for *future* or for a pause to begin, at most *seconds*."""
         self._wake = asyncio.get_running_loop().create_future()
@@ -285,11 +238,9 @@ class GoalRunner:
         if outcome.status is GoalStatus.CANCELED:
             self._fail(outcome.text or f"another client cancelled the goal of action {name}", "canceled")
         if outcome.status is not GoalStatus.SUCCEEDED:
-            explain = self._options.aborted
-            code, *more = (error_code(outcome.result),) if explain is None else explain(outcome.result)
-            text = outcome.text or error_text(outcome.result)
+            code, text = error_code(outcome.result), outcome.text or error_text(outcome.result)
             number, told = f" with code {code}" if code else "", f": {text}" if text else ""
-            self._fail(f"action {name} was aborted{number}{told}", "aborted", code, text, *more)
+            self._fail(f"action {name} was aborted{number}{told}", "aborted", code, text)
         return outcome.result
 
 

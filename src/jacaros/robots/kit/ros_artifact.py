@@ -10,7 +10,7 @@ from jacaros.artifacts.env.artifact import Artifact, Out, internal_operation
 from jacaros.artifacts.env.errors import InvalidArtifact
 from jacaros.artifacts.env.operation import marks_of
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.robots.kit.acting import GoalOptions, GoalRunner, Suspending, Switch, missing_number
+from jacaros.robots.kit.acting import GoalOptions, GoalRunner, Suspending, missing_number
 from jacaros.robots.kit.connection import (
     GUARD_TIMEOUT,
     MATCH_LOOK,
@@ -546,9 +546,6 @@ class RosArtifact(Artifact):
         on_feedback: Callable[[Any], None] | None = None,
         under_way: Callable[[bool], None] | None = None,
         suspend: Suspending | None = None,
-        pause: Switch | None = None,
-        resume: Switch | None = None,
-        aborted: Callable[[Any], tuple[object, ...]] | None = None,
     ) -> Any:
         """Run an action goal from an operation and return its result; a step boundary.
 
@@ -565,31 +562,23 @@ class RosArtifact(Artifact):
             under_way: called with True when the goal is sent, and with False when it ends, or is cancelled because
                 its intention is suspended or dropped; no feedback follows. Runs outside of all operations.
             suspend: effect of suspending the intention: ``go_on``: the goal continues; ``cancel``: the goal is
-                cancelled, and sent again on ``.resume``; ``pause``: *pause* and *resume* are called. All but
-                ``go_on`` need ``@operation(pausable=True)``, and the time does not count. None: ``cancel`` in such an
-                operation, else ``go_on``.
-            pause, resume: pause the goal at its server and resume it, such as ``lambda: self.pauser.call({"data":
-                True}, 2.0)``. A goal that cannot be paused is cancelled, and sent again on ``.resume``. *resume* is
-                also called when a paused goal ends or is cancelled: other clients may need the server.
-            aborted: computes Code and what follows Text in ``aborted(Code,Text)`` from the result of an aborted goal;
-                None: the field ``error_code`` (0 if none exists), and nothing more.
+                cancelled, and sent again on ``.resume``, which needs ``@operation(pausable=True)``, and the time does
+                not count. None: ``cancel`` in such an operation, else ``go_on``.
 
         Raises:
             OperationFailed: ``rejected``, ``aborted(Code,Text)``, ``canceled``, ``timeout(Seconds)``,
                 ``server_unavailable`` or ``server_lost``; ``wrong_value(Field)`` if the fields do not match the type
                 or a number is NaN.
-            InvalidArtifact: the operation is not pausable, or *pause* and *resume* are missing.
+            InvalidArtifact: the operation is not pausable.
         """
         if suspend is None:
             suspend = "cancel" if self.current.pausable else "go_on"
-        self._check_suspending(suspend, pause, resume)
+        self._check_suspending(suspend)
         missing = missing_number(goal)
         if missing is not None:
             told = f"field `{missing}` of the goal is not a number; nothing was sent"
             self.fail(told, "wrong_value", missing)
-        options = GoalOptions(
-            timeout, self._feedback(on_feedback), under_way, suspend, pause, resume, aborted
-        )
+        options = GoalOptions(timeout, self._feedback(on_feedback), under_way, suspend)
         await self.guarded(client)
         runner = GoalRunner(client, goal, options, self)
         try:
@@ -598,18 +587,13 @@ class RosArtifact(Artifact):
         except MessageMismatch as error:
             self.fail(str(error), "wrong_value", error.field)
 
-    def _check_suspending(self, suspend: Suspending, pause: Switch | None, resume: Switch | None) -> None:
+    def _check_suspending(self, suspend: Suspending) -> None:
         name = self.current.request.operation
-        if suspend not in ("go_on", "cancel", "pause"):
-            raise InvalidArtifact(f"act(suspend={suspend!r}) in {name}: expected go_on, cancel or pause")
+        if suspend not in ("go_on", "cancel"):
+            raise InvalidArtifact(f"act(suspend={suspend!r}) in {name}: expected go_on or cancel")
         if suspend != "go_on" and not self.current.pausable:
             raise InvalidArtifact(
                 f"act(suspend={suspend!r}) in {name} needs a pausable operation: write @operation(pausable=True)"
-            )
-        if suspend == "pause" and (pause is None or resume is None):
-            raise InvalidArtifact(
-                f'act(suspend="pause") in {name} needs pause=... and resume=..., which call the server; an action '
-                "itself can only be cancelled"
             )
 
     def _feedback(self, on_feedback: Callable[[Any], None] | None) -> Callable[[Any], None] | None:

@@ -103,16 +103,12 @@ class Codec:
         fill: builds the message, request or goal.
         end: builds the last message of repeated publishing; None: no last message.
         outputs: read the output parameters from the response or result.
-        code: reads the Code of ``aborted(Code,Text)``; None: the usual field.
-        aborted: read what follows Code and Text.
         succeeded: returns whether an answer shows success.
     """
 
     fill: Fill
     end: Fill | None
     outputs: tuple[Read, ...] = ()
-    code: Read | None = None
-    aborted: tuple[Read, ...] = ()
     succeeded: Callable[[Any], bool] = lambda answer: True
 
 
@@ -141,21 +137,17 @@ def codec(
     if not types[1:]:
         return Codec(fill, end) if fill is not None and len(problems) == before else None
 
-    def read(fields: tuple[FieldPart, ...]) -> tuple[Read, ...]:
-        answer = FieldType(types[1])
-        made = [tried(each.place, problems, reader, each, answer, None, interfaces) for each in fields]
-        return tuple(each for each in made if each is not None)
+    def read(field: FieldPart) -> Read | None:
+        return tried(field.place, problems, reader, field, FieldType(types[1]), None, interfaces)
 
-    outputs, aborted = read(part.outputs), read(part.aborted)
-    code = read((part.code,)) if part.code is not None else ()
-    success = part.success
+    outputs, success = [read(each) for each in part.outputs], part.success
     if success is not None:
-        read((FieldPart(success.path, success.place),))
+        read(FieldPart(success.path, success.place))
     if fill is None or len(problems) > before:
         return None
     if success is None and not part.any_success and "success" in interfaces.fields(types[1]):
         success = Success(read_path("success"), part.place)
-    return Codec(fill, end, outputs, code[0] if code else None, aborted, _succeeded(success))
+    return Codec(fill, end, tuple(filter(None, outputs)), _succeeded(success))
 
 
 def _succeeded(success: Success | None) -> Callable[[Any], bool]:

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Annotated
 
 from jacaros.robots.mapping.fields import (
-    NOTHING,
     START,
     UNNAMED,
     FilePosition,
@@ -265,7 +264,7 @@ def _artifact(
         interfaces=lambda folders, _: (*shared, *_interfaces(folders, folder)),
     )
     part = replace(part, **found)
-    for check in (_names, _arities, _references, _expectations, _streams, _switches, _own_parameters):
+    for check in (_names, _arities, _references, _expectations, _streams, _own_parameters):
         node.problems += check(part)
     return part
 
@@ -313,24 +312,6 @@ def _arities(part: ArtifactPart) -> Iterator[Problem]:
             yield operation.place.problem(
                 f"duplicate operation `{operation.name}` with {key[1]} arguments; the first is on line {before.line}",
                 "give it another name, or other parameters",
-            )
-
-
-def _switches(part: ArtifactPart) -> Iterator[Problem]:
-    """Yield operations that are named to pause and resume others, but do not exist or are not able to."""
-    plain = {each.name: each for each in part.operations if part.arity(each) == 0}
-    able = [name for name, each in plain.items() if each.is_switch]
-    for operation in part.operations:
-        for wanted in (operation.pause, operation.resume):
-            if wanted is NOTHING or not wanted.text or wanted.text in able:
-                continue
-            known = any(each.name == wanted.text for each in part.operations)
-            yield wanted.place.problem(
-                f"`{wanted.text}` cannot pause or resume a goal: it takes arguments, or runs for a while"
-                if known
-                else f"unknown operation `{wanted.text}`",
-                "name one without arguments that calls a service, publishes once or sets a parameter; "
-                f"{'possible: ' + ', '.join(able) if able else 'none exists yet'}",
             )
 
 

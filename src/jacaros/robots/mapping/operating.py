@@ -16,7 +16,7 @@ from jacaros.robots.kit.acting import error_code, error_text, missing_number
 from jacaros.robots.kit.connection import Matching
 from jacaros.robots.kit.services import failure_reason, refusal, set_parameter
 from jacaros.robots.mapping.checking import Codec, codec, message_types
-from jacaros.robots.mapping.decoding import Read, Unshowable
+from jacaros.robots.mapping.decoding import Unshowable
 from jacaros.robots.mapping.encoding import WrongValue
 from jacaros.robots.mapping.host import MappingHost, ask_type
 from jacaros.robots.mapping.mapped_topic import Updater
@@ -98,21 +98,11 @@ class _ServiceOperation(_Operation):
         await self.ready()
         assert self._part.timeout is not None
         response = await self._host.call(self._client, self._part.timeout, **self._fields(inputs))
-        self._check_success(response)
-        self._give(response, outs)
-
-    async def switch(self) -> None:
-        self._check_success(await self._client.call(self._fields(()), self._part.timeout))
-
-    def _check_success(self, response: Any) -> None:
         if not self._codec.succeeded(response):
             name = self._client.name
             message, text = refusal(name, response)
             self._host.fail(message, "service_refused", Atom(name.lstrip("/")), text)
-
-
-NOT_SHOWN = Atom("unknown")
-"""Replaces a value of a failed goal's result that agents cannot have, such as NaN."""
+        self._give(response, outs)
 
 
 class _ActionOperation(_Operation):
@@ -122,7 +112,6 @@ class _ActionOperation(_Operation):
     def __init__(self, host: MappingHost, part: OperationPart) -> None:
         self._updaters = [Updater(host, each) for each in part.feedback]
         self._under_way = 0
-        self.switches: tuple[_ServiceOperation | _SetParameter, ...] = ()
         super().__init__(host, part)
 
     def _prepare(self, type_name: str, problems: list[Problem]) -> None:
@@ -134,10 +123,7 @@ class _ActionOperation(_Operation):
 
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
         await self.ready()
-        for each in self.switches:
-            await each.ready()
         host, part = self._host, self._part
-        pause, resume = (each.switch for each in self.switches) if self.switches else (None, None)
         result = await host.act(
             self._client,
             self._fields(inputs),
@@ -145,28 +131,12 @@ class _ActionOperation(_Operation):
             on_feedback=self._updater if self._updaters else None,
             under_way=self._count if self._updaters else None,
             suspend=part.suspend,
-            pause=pause,
-            resume=resume,
-            aborted=self._explain,
         )
         if not self._codec.succeeded(result):
             text = error_text(result)
-            code, *more = self._explain(result)
-            told = f": {text}" if text else ""
-            host.fail(f"action {self._client.name} did not succeed{told}", "aborted", code, text, *more)
+            told = f"action {self._client.name} did not succeed{f': {text}' if text else ''}"
+            host.fail(told, "aborted", error_code(result), text)
         self._give(result, outs)
-
-    def _explain(self, result: Any) -> tuple[object, ...]:
-        """Return the error code of a result, and the further values that the mapping declares."""
-        known = self._codec
-        code = error_code(result) if known.code is None else self._shown(known.code, result)[0]
-        return (code, *(value for take in known.aborted for value in self._shown(take, result)))
-
-    def _shown(self, take: Read, result: Any) -> Sequence[object]:
-        try:
-            return take(result, result, 0)
-        except Unshowable:
-            return (NOT_SHOWN,)
 
     def _count(self, begins: bool) -> None:
         self._under_way += 1 if begins else -1
@@ -218,21 +188,15 @@ class _PublishOperation(_Operation):
             await self._host.pause_point()
             if self._motions.stops != stops:
                 self._host.fail(f"`{self._part.name}` was aborted", "aborted", 0.0)
-        self._send_once(inputs)
+        self._send(inputs)
+        if self._part.at_end is not None:
+            self._end(inputs)
 
     def _pauses(self, inputs: Sequence[object]) -> Iterator[float]:
         """Yield pauses until messages arrive; a message that stops a robot does not wait."""
         if self._matching.exists() or (self._drives and not self._filled(inputs)[1]):
             return iter(())
         return self._matching.pauses(always=self._drives)
-
-    async def switch(self) -> None:
-        self._send_once(())
-
-    def _send_once(self, inputs: Sequence[object]) -> None:
-        self._send(inputs)
-        if self._part.at_end is not None:
-            self._end(inputs)
 
     def _seconds(self, inputs: Sequence[object]) -> float:
         duration = self._part.duration
@@ -345,15 +309,10 @@ class _ParameterOperation:
 class _SetParameter(_ParameterOperation):
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
         try:
-            await self._host.step(self.switch(inputs))
+            setting = set_parameter(self._parameters, self._name, self._value(inputs), self._part.timeout)
+            await self._host.step(setting)
         except RosError as error:
             self._fail(error)
-
-    async def ready(self) -> None:
-        """Do nothing: everything is known."""
-
-    async def switch(self, inputs: Sequence[object] = ()) -> None:
-        await set_parameter(self._parameters, self._name, self._value(inputs), self._part.timeout)
 
     def _value(self, inputs: Sequence[object]) -> Any:
         part = self._part.values[0]
@@ -412,12 +371,4 @@ _RUNNERS: dict[OperationKind, Any] = {
 
 def runners_of(host: MappingHost) -> list[Any]:
     """Return what runs the operations of an artifact, in the order of the file."""
-    parts = host.part.operations
-    runners = [_RUNNERS[part.kind](host, part) for part in parts]
-    pairs = list(zip(parts, runners, strict=True))
-    plain = {part.name: runner for part, runner in pairs if host.part.arity(part) == 0}
-    for part, runner in pairs:
-        if part.kind is OperationKind.ACTION and part.suspend == "pause":
-            # The reader has checked that these operations are of the right kind.
-            runner.switches = (plain[part.pause.text], plain[part.resume.text])
-    return runners
+    return [_RUNNERS[part.kind](host, part) for part in host.part.operations]

@@ -114,12 +114,7 @@ class OperationPart:
         node: the node whose parameter is set or read; empty for our own.
         properties: properties that are refreshed or read.
         feedback: properties from the feedback.
-        code: field of the result that is the Code of ``aborted(Code,Text)``; None: a field ``error_code`` if there is
-            one.
-        aborted: fields of the result that follow Code and Text.
-        suspend: effect of suspending the intention on the goal: ``go_on``, ``cancel``, or ``pause`` by two
-            operations.
-        pause, resume: names of these operations.
+        suspend: effect of suspending the intention on the goal: ``go_on`` or ``cancel``.
         uses: resources that it holds while it runs; empty: those of a motion, if it is one.
         expect: effects on properties, with their places.
         meanwhile: what must hold while it runs, with places.
@@ -144,24 +139,13 @@ class OperationPart:
     unmatched: str | None = None
     timeout: float | None = None
     feedback: tuple[TopicPart, ...] = ()
-    code: FieldPart | None = None
-    aborted: tuple[FieldPart, ...] = ()
-    suspend: Literal["go_on", "cancel", "pause"] = "cancel"
-    pause: Written = NOTHING
-    resume: Written = NOTHING
+    suspend: Literal["go_on", "cancel"] = "cancel"
     node: str = ""
     properties: tuple[Written, ...] = ()
     description: str = ""
     uses: tuple[str, ...] = ()
     expect: "tuple[tuple[FilePosition, Expect], ...]" = ()
     meanwhile: "tuple[tuple[FilePosition, Expect], ...]" = ()
-
-    @property
-    def is_switch(self) -> bool:
-        """Whether it can pause and resume goals of others: it sends a request and ends."""
-        if self.kind is OperationKind.PUBLISH:
-            return self.rate is None
-        return self.kind in (OperationKind.SERVICE, OperationKind.SET)
 
 
 _PARAMETER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
@@ -349,37 +333,6 @@ def _success(node: YamlNode) -> Success:
     )
 
 
-def _code(node: YamlNode) -> FieldPart:
-    if isinstance(node.value, list):
-        text = "`code` must be one field"
-        node.wrong(text, "write code: error_code, or code: {path: error_code, as: name}")
-        return FieldPart(WHOLE, place_of(node))
-    return _outputs(node)[0]
-
-
-_SUSPEND = ("go_on", "cancel")
-
-
-def _suspend(node: YamlNode, part: OperationPart) -> dict[str, Any]:
-    if node.value == "pause":
-        node.wrong(
-            "an action can only be cancelled, not paused",
-            "name operations that pause and resume the server: suspend: {pause: hold, resume: go_on}",
-        )
-        return {}
-    if not isinstance(node.value, dict):
-        if node.value not in _SUSPEND:
-            node.wrong(
-                f"invalid `suspend`: {node.value!r}",
-                f"write {' or '.join(_SUSPEND)}, or operations that pause and resume the server: "
-                "{pause: hold, resume: go_on}",
-            )
-            return {}
-        return {"suspend": node.value}
-    entries = node.mapping("pause", "resume", required=("pause", "resume"))
-    return {"suspend": "pause", **{key: written(each) for key, each in entries.items()}}
-
-
 def _uses(node: YamlNode) -> tuple[str, ...]:
     found: list[str] = []
     for item in each_of(node):
@@ -484,9 +437,7 @@ KEYS: dict[str, dict[str, ReadPart]] = {
         "success": _answer,
         "feedback": _into("feedback", lambda node: tuple(read_feedback(*pair) for pair in node.entries())),
         "timeout": _TIMEOUT,
-        "suspend": _suspend,
-        "code": _into("code", _code),
-        "aborted": _into("aborted", _outputs),
+        "suspend": _into("suspend", lambda node: node.choice("cancel", "go_on")),
     },
     "set_parameter": {"set_parameter": _of_node, "node": _NODE, "value": _value, "timeout": _TIMEOUT},
     "get_parameter": {"get_parameter": _of_node, "node": _NODE, "outputs": _output, "timeout": _TIMEOUT},

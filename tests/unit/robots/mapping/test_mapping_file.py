@@ -206,19 +206,8 @@ operations: {go: {publish: t, fields: {linear: {x: 1}}}}
   1:48: `linear` has no fields of its own here | write their paths: linear.x: ...
 operations: {go: {publish: t, fields: {x: {value: 1, as: mean}}}}
   1:58: `as: mean` is for fields that an agent reads | here: yaw, pitch, roll, name
-operations: {go: {action: a, suspend: stop}}
-  1:39: invalid `suspend`: 'stop' | write go_on or cancel, or operations that pause and resume the server: {pause:
-  hold, resume: go_on}
 operations: {go: {action: a, suspend: pause}}
-  1:39: an action can only be cancelled, not paused | name operations that pause and resume the server
-operations: {hold: {service: s}, go: {action: a, suspend: {pause: hold}}}
-  1:59: 'suspend' lacks the key 'resume' | add 'resume: ...'
-operations: {hold: {service: s}, go: {action: a, suspend: {pause: hodl, resume: hold}}}
-  1:67: unknown operation `hodl` | name one without arguments that calls a service
-operations: {go: {action: a, suspend: {pause: halt, resume: halt}}, halt: {action: b}}
-  1:47: `halt` cannot pause or resume a goal: it takes arguments, or runs for a while | name one without
-operations: {h: {service: s}, go: {action: a, suspend: {pause: h, resume: i}}, i: {parameters: [x], service: s}}
-  1:75: `i` cannot pause or resume a goal: it takes arguments, or runs for a while | name one without
+  1:39: 'suspend' is 'pause' | choose one of: cancel, go_on
 operations: {look: {refresh: pose}}
   1:30: unknown property `pose` | properties from topics and frames: none
 properties: {a: t}\noperations: {look: {read: a}}
