@@ -3,10 +3,8 @@
 from collections import deque
 from functools import partial
 
-from jacaros.robots.mapping.file import ArtifactPart
-from jacaros.robots.mapping.frames import StampedFrames
 from jacaros.robots.mapping.host import MappingHost
-from jacaros.robots.mapping.properties import DerivedPart, FramePart
+from jacaros.robots.mapping.properties import DerivedPart
 from jacaros.robots.ros.message import to_seconds
 from jacaros.robots.streams import HIDE, SHOW, Pattern, Spec, Values
 from jacaros.runtime.clock import Timer
@@ -38,14 +36,8 @@ class Derivation:
         self._latest = host.clock.now()
         self._told_dropped = 0
         self._pattern = Pattern(spec, self._latest, self._emit)
-        frames = frames_at_stamps(spec, host.part)
-        self._frames = None
-        if frames:
-            patience = float(spec.options["within"]) + spec.lateness
-            self._frames = StampedFrames(host, part, frames, patience, self._take_with_frames)
         for number, name in enumerate(spec.sources):
-            hear = self._hear_end if number in frames else self.hear
-            host.taps.setdefault(name, []).append(partial(hear, number))
+            host.taps.setdefault(name, []).append(partial(self.hear, number))
         host.at_dispose(self.close)
         self._wait()
 
@@ -62,31 +54,8 @@ class Derivation:
         if now < self._latest - JUMP:
             self._restart(now)
         time = min(stamp, now) if stamp > 0.0 else now
-        if self._frames is not None and stream == 0:
-            if values is not None:
-                self._frames.add(time, values, cause)
-                return
-            self._frames.clear()
         self._latest, self._cause = now, cause
         self._pattern.take(stream, time, values)
-        self._settle()
-
-    def _hear_end(self, stream: int, stamp: float, values: Values | None, cause: Cause | None) -> None:
-        """Handle the end of a frame; while it is known, its values are looked up at stamps."""
-        if values is None:
-            self.hear(stream, stamp, None, cause)
-
-    def _take_with_frames(
-        self, time: float, values: Values, frames: dict[int, Values], cause: Cause | None
-    ) -> None:
-        """Handle a message of the first stream together with the frames at its time."""
-        self._latest, self._cause = self._host.clock.now(), cause
-        for number, found in frames.items():
-            self._pattern.take(number, time, found)
-        self._pattern.take(0, time, values)
-        self._settle()
-
-    def _settle(self) -> None:
         if self._pattern.dropped != self._told_dropped:
             self._tell_dropped()
         self._wait()
@@ -96,8 +65,6 @@ class Derivation:
             self._emit(HIDE, ())
         self._pattern = Pattern(self._spec, now, self._emit)
         self._told_dropped = 0
-        if self._frames is not None:
-            self._frames.clear()
         self.close()
 
     def _tell_dropped(self) -> None:
@@ -154,14 +121,6 @@ class Derivation:
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
-
-
-def frames_at_stamps(spec: Spec, part: ArtifactPart) -> dict[int, FramePart]:
-    """Return the frames that are looked up at the stamps of the first stream, by the numbers of their streams."""
-    if spec.operator != "together":
-        return {}
-    frames = {each.name: each for each in part.frames}
-    return {number: frames[name] for number, name in enumerate(spec.sources) if number and name in frames}
 
 
 def stamp_of(message: object, latched: bool) -> float:

@@ -1,14 +1,10 @@
 """Derived properties and signals of mapping files: end to end on the virtual clock, and what is wrong with declarations."""
 
-import math
-from bisect import bisect_left
-from collections.abc import Sequence
-from operator import itemgetter
 from typing import Any
 
 import pytest
 from mapped_lab import mapped, settle
-from robot_lab import TWIST, Lab, Watcher, apart, made
+from robot_lab import Lab, Watcher, made
 
 from jacaros.robots.mapping.file import MappingError, read_mapping
 
@@ -129,109 +125,12 @@ async def test_frames_are_streams(lab: Lab, watcher: Watcher) -> None:
     assert seen == [False, True, True, False]
 
 
-AT_STAMPS = f"""
-properties:
-  scan: {{topic: scan, type: sensor_msgs/msg/LaserScan, fields: [header.stamp]}}
-  mark: {{topic: mark, type: {POINT}, fields: [header.stamp]}}
-frames:
-  pose: {{target: map, source: base_footprint}}
-derived:
-  at_scan: {{together: [scan, pose], within: 0.1}}
-  at_mark: {{together: [mark, pose], within: 0.1}}
-"""
-
-
-@pytest.mark.world("empty")
-@made(mapped(AT_STAMPS))
-async def test_a_frame_is_looked_up_at_the_stamps_of_messages(lab: Lab, watcher: Watcher) -> None:
-    """The robot drives a circle at 0.5 m/s; poses are compared with the true ones of the stamps.
-
-    The simulator sends tf and scans at the same ticks, every 50 ms and every 200 ms. The stamps of the marks are between,
-    and the world moves in steps of 20 ms, 10 mm and 1.1 degrees.
-    """
-    truth: list[tuple[float, tuple[float, float, float]]] = []
-    wheels = lab.backend.publisher("/cmd_vel", TWIST)
-    marks = lab.backend.publisher("mark", POINT)
-    for _ in range(40):
-        wheels.publish(wheels.message(linear={"x": 0.5}, angular={"z": 1.0}))
-        for step in range(20):
-            truth.append((lab.clock.now(), lab.pose()))
-            if step == 13:
-                marks.publish(marks.message(header={"stamp": lab.clock.now()}))
-            await lab.sleep(0.005)
-    stamp, newest = 0.0, []
-    for name, values in watcher.changes:
-        if name == "scan":
-            stamp = float(str(values[0]))
-        elif name == "pose" and stamp:
-            newest.append(_off(stamp, values, truth))
-    assert max(newest) > (0.05, 5.0)
-    for name, count, most in (("at_scan", 19, 1e-9), ("at_mark", 39, 0.005)):
-        off = [_off(float(str(stamp)), pose, truth) for stamp, *pose in watcher.values(name)]
-        assert len(off) >= count
-        assert max(metres for metres, _ in off) < most
-        assert max(degrees for _, degrees in off) < 100.0 * most
-
-
-TWO_AND_A_FRAME = """
-frames:
-  pose: {target: map, source: base_link}
-derived:
-  scene: {together: [a, pose, b], within: 0.05, lateness: 0.2}
-"""
-
-
-async def test_a_frame_and_two_topics_come_together(lab: Lab) -> None:
-    artifact = await lab.make(mapped(MAPPING + TWO_AND_A_FRAME))
-    s = Sender(lab, lab.watch(artifact))
-    await lab.sleep(1.0)
-    for x in (0.0, 1.0):
-        await _stand(lab, x)
-        await lab.sleep(0.2)
-    await s.send("b", 9.0, ago=0.29)
-    assert s.watcher.holds("scene") == []
-    await s.send("a", 5.0, ago=0.3)  # 0.1 s after the first transform, of the two that are 0.2 s apart
-    assert s.watcher.holds("scene") == [(5.0, pytest.approx(0.5, abs=1e-5), 0.0, 0.0, 9.0)]
-
-
-async def test_a_message_without_a_transform_is_dropped_and_logged(lab: Lab) -> None:
-    artifact = await lab.make(mapped(MAPPING + TWO_AND_A_FRAME))
-    s = Sender(lab, lab.watch(artifact))
-    await lab.sleep(4.0)
-    await _stand(lab, 0.0)
-    await lab.sleep(0.1)
-    await s.send("a", 1.0)
-    await s.send("b", 2.0)
-    await lab.sleep(0.2)
-    assert not any("without a transform" in line for line in lab.logged)
-    await lab.sleep(0.1)
-    assert any("`scene`: dropped 1 message without a transform: no transform" in line for line in lab.logged)
-    await s.send("a", 3.0)
-    await s.send("b", 4.0)
-    await lab.sleep(0.1)
-    await _stand(lab, 0.2)
-    assert [each[0] for each in s.watcher.holds("scene")] == [3.0]
-
-
 async def _stand(lab: Lab, x: float) -> None:
     """Send the transform of a robot that stands at x metres now."""
     header = {"stamp": lab.clock.now(), "frame_id": "map"}
     transform = {"translation": {"x": x}}
     lab.backend.tf_broadcast({"header": header, "child_frame_id": "base_link", "transform": transform})
     await settle()
-
-
-def _off(
-    stamp: float, values: Sequence[object], truth: list[tuple[float, tuple[float, float, float]]]
-) -> tuple[float, float]:
-    """Metres and degrees between a pose and the true one at a stamp."""
-    pose = [float(str(each)) for each in values]
-    place = bisect_left(truth, stamp, key=itemgetter(0))
-    (t0, before), (t1, after) = truth[place - 1], truth[min(place, len(truth) - 1)]
-    part = (stamp - t0) / (t1 - t0) if t1 > t0 else 0.0
-    x, y = (a + part * (b - a) for a, b in zip(before[:2], after[:2], strict=True))
-    yaw = before[2] + part * math.degrees(math.remainder(math.radians(after[2] - before[2]), math.tau))
-    return apart((pose[0], pose[1], math.degrees(pose[2])), (x, y, yaw))
 
 
 def _problems(entry: str) -> list[str]:
