@@ -156,7 +156,7 @@ def mappings() -> Schema:
         "properties": named({"anyOf": [TEXT, topic[0]]}),
         "signals": named({"anyOf": [TEXT, topic[1]]}),
         "frames": named(keys_of(properties.FRAME, "target", "source")),
-        "parameters": named({"anyOf": [values, keys_of(properties.OTHER), keys_of(properties.OWN)]}),
+        "parameters": named({"anyOf": [values, keys_of(properties.OWN, "default")]}),
         "derived": named({"anyOf": derived}),
         "operations": named({"anyOf": [*kinds, listed({"anyOf": kinds})]}),
     }

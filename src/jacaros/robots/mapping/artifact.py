@@ -14,7 +14,7 @@ from jacaros.robots.kit.connection import MATCH_OPTIONS
 from jacaros.robots.kit.options import text
 from jacaros.robots.mapping.checking import type_problems
 from jacaros.robots.mapping.deriving import Derivation
-from jacaros.robots.mapping.fields import unlike
+from jacaros.robots.mapping.fields import unlike, value_names
 from jacaros.robots.mapping.file import (
     ArtifactPart,
     MappingError,
@@ -29,7 +29,7 @@ from jacaros.robots.mapping.manual import Documentation, parameter_words
 from jacaros.robots.mapping.mapped_topic import MappedTopic, Updater, find_types
 from jacaros.robots.mapping.operating import runners_of
 from jacaros.robots.mapping.operations import OperationKind, OperationPart
-from jacaros.robots.mapping.parameters import NodeParameter, OwnParameter, kept_by_master
+from jacaros.robots.mapping.parameters import OwnParameter, kept_by_master
 from jacaros.robots.ros.guarded import VELOCITIES
 from jacaros.runtime.files.yaml import Problem
 
@@ -72,15 +72,11 @@ class MappedArtifact(MappingHost):
                 untyped.append(topic)
         for frame in self.part.frames:
             self.kept(FrameUpdater(self, frame))
-        for parameter in self.part.parameters:
-            if parameter.declaration is None:
-                self.kept(NodeParameter(self, parameter))
         if untyped:
             self.start(self.run_process, partial(find_types, self, untyped))
 
     def _declare_parameters(self) -> list[OwnParameter]:
-        parts = [part for part in self.part.parameters if part.declaration is not None]
-        own = [self.kept(OwnParameter(self, part)) for part in parts]
+        own = [self.kept(OwnParameter(self, part)) for part in self.part.parameters]
         problems = [problem for each in own if (problem := each.declare()) is not None]
         self._require_none(problems)
         return own
@@ -98,7 +94,7 @@ class TunedArtifact(MappedArtifact):
     async def init(self, *arguments: object) -> None:  # type: ignore[override]
         """Read the robot's name and options, both optional; on ROS 1 request the parameters from the master."""
         super().init(*arguments)
-        if self.own_parameters and kept_by_master(self.ros):
+        if kept_by_master(self.ros):
             for each in self.own_parameters:
                 await each.ask()
 
@@ -114,9 +110,8 @@ def mapped_type(mapping: MappingFile, name: str) -> type[MappedArtifact]:
         "further_uses": motion_uses(part),
         **methods(part),
     }
-    tuned = any(each.declaration is not None for each in part.parameters)
     plain = "".join(c if c.isalnum() or c == "_" else "_" for c in name)
-    return type(plain, (TunedArtifact if tuned else MappedArtifact,), members)
+    return type(plain, (TunedArtifact if part.parameters else MappedArtifact,), members)
 
 
 _made: dict[tuple[Path, int, str], type[MappedArtifact]] = {}
@@ -177,7 +172,7 @@ def _method(artifact: ArtifactPart, number: int) -> Callable[..., Any]:
         outs = [out for out in arguments[inputs:] if isinstance(out, Out)]
         await self.operating[number].run(arguments[:inputs], outs)
 
-    names = [*part.parameters, *unlike(part.parameters, artifact.output_names(part))]
+    names = [*part.parameters, *unlike(part.parameters, value_names(part.outputs))]
     kind = inspect.Parameter.POSITIONAL_OR_KEYWORD
     run.__signature__ = inspect.Signature(  # type: ignore[attr-defined]  # read by inspect.signature
         [inspect.Parameter(name, kind) for name in ("self", *names)]
@@ -220,9 +215,7 @@ def description(part: OperationPart) -> str:
         OperationKind.SERVICE: f"Calls the service {part.target.text}{of_type}.",
         OperationKind.ACTION: f"Runs a goal of the action {part.target.text}{of_type}.",
         OperationKind.SET: f"Sets the parameter {part.target.text} of {part.node or 'our own node'}.",
-        OperationKind.GET: f"Gives the parameter {part.target.text} of {part.node or 'our own node'}.",
         OperationKind.REFRESH: f"Updates {named} to the newest values.",
-        OperationKind.READ: f"Gives the newest values of {named}.",
     }
     told = part.description or usual[part.kind]
     expected = [

@@ -108,19 +108,6 @@ class ArtifactPart:
         """Properties and signals from topics."""
         return (*self.properties, *self.signals)
 
-    def arity(self, operation: OperationPart) -> int:
-        """Return the number of arguments of an operation, including outputs."""
-        return len(operation.parameters) + len(self.output_names(operation))
-
-    def output_names(self, operation: OperationPart) -> list[str]:
-        """Return names for the output parameters of an operation."""
-        if operation.kind is not OperationKind.READ:
-            return value_names(operation.outputs)
-        wanted = operation.properties[0].text if operation.properties else ""
-        fields = {each.name: each.fields or () for each in self.properties}
-        fields |= {each.name: each.fields for each in self.frames}
-        return value_names(fields.get(wanted, ()))
-
 
 _KEYS = tuple(declared_entries(ArtifactPart))
 """The keys of an artifact."""
@@ -306,7 +293,7 @@ def _arities(part: ArtifactPart) -> Iterator[Problem]:
     """Yield operations that agents cannot tell apart: same name, same number of arguments."""
     seen: dict[tuple[str, int], FilePosition] = {}
     for operation in part.operations:
-        key = (operation.name, part.arity(operation))
+        key = (operation.name, len(operation.parameters) + len(value_names(operation.outputs)))
         before = seen.setdefault(key, operation.place)
         if before is not operation.place and operation.name != UNNAMED:
             yield operation.place.problem(
@@ -317,9 +304,9 @@ def _arities(part: ArtifactPart) -> Iterator[Problem]:
 
 def _own_parameters(part: ArtifactPart) -> Iterator[Problem]:
     """Yield operations on parameters of our own that the artifact does not declare."""
-    own = [each.parameter for each in part.parameters if not each.node]
+    own = [each.parameter for each in part.parameters]
     for operation in part.operations:
-        if operation.kind not in (OperationKind.SET, OperationKind.GET) or operation.node:
+        if operation.kind is not OperationKind.SET or operation.node:
             continue
         if operation.target.text not in own:
             yield operation.target.place.problem(
@@ -383,9 +370,6 @@ def _references(part: ArtifactPart) -> Iterator[Problem]:
             if topic is not None and topic.each is not None:
                 text = f"`{wanted.text}` is one property for each element, and always up to date"
                 yield wanted.place.problem(text, "leave it out")
-            elif operation.kind is OperationKind.READ and topic is not None and topic.fields is None:
-                text = f"the number of values of `{wanted.text}` is not known"
-                yield wanted.place.problem(text, f"give `{wanted.text}` fields")
     for topic in part.topics:
         if topic.policy.on_demand and topic.name not in asked:
             text = f"no operation requests `{topic.name}`, which is updated on demand"

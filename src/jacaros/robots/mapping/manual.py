@@ -88,10 +88,8 @@ def _properties(part: ArtifactPart, interfaces: Interfaces) -> Iterator[str]:
 
 
 def _of_parameter(part: ParameterPart) -> str:
-    """Describe a parameter; for our own also type, default and range."""
+    """Describe a parameter, with its type, default and range."""
     declaration = part.declaration
-    if declaration is None:
-        return (part.description or f"parameter {part.parameter} of {part.node}").rstrip(".")
     told = (part.description or f"parameter {part.parameter} of our own").rstrip(".")
     low, high = declaration.minimum, declaration.maximum
     words = [

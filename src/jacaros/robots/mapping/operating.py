@@ -6,7 +6,7 @@ A robot that was sent a velocity is always sent zero at the end.
 import asyncio
 import math
 from collections.abc import Iterator, Sequence
-from typing import Any, NoReturn
+from typing import Any
 
 from jacaros.artifacts.env.arbiter import WHEELS
 from jacaros.artifacts.env.artifact import Out
@@ -21,12 +21,11 @@ from jacaros.robots.mapping.encoding import WrongValue
 from jacaros.robots.mapping.host import MappingHost, ask_type
 from jacaros.robots.mapping.mapped_topic import Updater
 from jacaros.robots.mapping.operations import OperationKind, OperationPart, ValueSource
-from jacaros.robots.mapping.parameters import own_name, parameter_converter
+from jacaros.robots.mapping.parameters import own_name
 from jacaros.robots.ros.action_client import ActionClient
 from jacaros.robots.ros.errors import (
     CapabilityMissing,
     MessageMismatch,
-    NameInvalid,
     RosError,
 )
 from jacaros.robots.ros.guarded import VELOCITIES
@@ -289,9 +288,7 @@ def _numbers(fields: Any) -> list[float]:
     return [float(fields)] if isinstance(fields, int | float) else []
 
 
-class _ParameterOperation:
-    """Common code of the operations on parameters of nodes."""
-
+class _SetParameter:
     def __init__(self, host: MappingHost, part: OperationPart) -> None:
         self._host, self._part = host, part
         self._name = part.target.text if part.node else own_name(host, part.target.text)
@@ -301,18 +298,14 @@ class _ParameterOperation:
         except CapabilityMissing as error:
             host.fail(f"{part.name}: {error}", "ros_error", host.name)
 
-    def _fail(self, error: RosError) -> NoReturn:
-        node = Atom(self._parameters.node.lstrip("/"))
-        self._host.fail(str(error), *failure_reason(error, node, self._part.timeout, Atom(self._name)))
-
-
-class _SetParameter(_ParameterOperation):
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
         try:
             setting = set_parameter(self._parameters, self._name, self._value(inputs), self._part.timeout)
             await self._host.step(setting)
         except RosError as error:
-            self._fail(error)
+            node = Atom(self._parameters.node.lstrip("/"))
+            reason = failure_reason(error, node, self._part.timeout, Atom(self._name))
+            self._host.fail(str(error), *reason)
 
     def _value(self, inputs: Sequence[object]) -> Any:
         part = self._part.values[0]
@@ -330,32 +323,15 @@ class _SetParameter(_ParameterOperation):
         return str(value) if isinstance(value, Atom) else value
 
 
-class _GetParameter(_ParameterOperation):
-    async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
-        field = self._part.outputs[0]
-        try:
-            value = await self._host.step(self._parameters.get(self._name, self._part.timeout))
-        except (RosError, NameInvalid) as error:
-            self._fail(error)
-        else:
-            try:
-                outs[0].set(parameter_converter(field.conversion, self._name)(value))
-            except Unshowable as error:
-                self._host.fail(f"{error}: {error.help}", error.functor, error.path)
-
-
 class _RequestOperation:
     def __init__(self, host: MappingHost, part: OperationPart) -> None:
         self._host, self._part = host, part
 
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
-        """Show the newest values, or give them to the caller."""
+        """Show the newest values."""
         for wanted in self._part.properties:
             reading = self._host.readings[wanted.text]
-            if self._part.kind is OperationKind.REFRESH:
-                await self._host.refresh(wanted.text, reading, "no_message")
-            else:
-                await self._host.give_newest(reading, "no_message", *outs)
+            await self._host.refresh(wanted.text, reading, "no_message")
 
 
 _RUNNERS: dict[OperationKind, Any] = {
@@ -363,9 +339,7 @@ _RUNNERS: dict[OperationKind, Any] = {
     OperationKind.SERVICE: _ServiceOperation,
     OperationKind.ACTION: _ActionOperation,
     OperationKind.SET: _SetParameter,
-    OperationKind.GET: _GetParameter,
     OperationKind.REFRESH: _RequestOperation,
-    OperationKind.READ: _RequestOperation,
 }
 
 

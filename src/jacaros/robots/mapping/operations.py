@@ -27,7 +27,6 @@ from jacaros.robots.mapping.fields import (
     path_of,
     place_of,
     read_conversion,
-    read_field,
     read_fields,
     ros_name,
     type_written,
@@ -89,9 +88,7 @@ class OperationKind(StrEnum):
     SERVICE = "service"
     ACTION = "action"
     SET = "set_parameter"
-    GET = "get_parameter"
     REFRESH = "refresh"
-    READ = "read"
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,8 +108,8 @@ class OperationPart:
         at_end: fields of the last message; None: zero for velocities, else no message.
         match_timeout: seconds to wait for a subscriber before the first message; None: the artifact's option.
         unmatched: ``warn`` or ``fail`` without a subscriber; None: the artifact's option.
-        node: the node whose parameter is set or read; empty for our own.
-        properties: properties that are refreshed or read.
+        node: the node whose parameter is set; empty for our own.
+        properties: properties that are refreshed.
         feedback: properties from the feedback.
         suspend: effect of suspending the intention on the goal: ``go_on`` or ``cancel``.
         uses: resources that it holds while it runs; empty: those of a motion, if it is one.
@@ -278,34 +275,12 @@ def _answer(node: YamlNode, part: OperationPart) -> dict[str, Any]:
     return {"any_success": True} if node.value == "none" else {"success": _success(node)}
 
 
-def _output(node: YamlNode, part: OperationPart) -> dict[str, Any]:
-    listed = each_of(node)
-    if len(listed) != 1:
-        node.wrong("a parameter has one value, so it has one output", "write outputs: [value]")
-    elif isinstance(listed[0].value, str):
-        return {"outputs": (replace(part.outputs[0], name=str(listed[0].value)),)}
-    else:
-        return {"outputs": (read_field(listed[0]),)}
-    return {}
-
-
 def _value(node: YamlNode, part: OperationPart) -> dict[str, Any]:
     return {"values": (read_value(node, WHOLE, part.parameters),)}
 
 
-def _of_node(node: YamlNode, part: OperationPart) -> dict[str, Any]:
-    """Read the parameter of a node; without ``outputs`` its value is the output of an operation that gives it."""
-    found: dict[str, Any] = {"target": written(node)}
-    if part.kind is OperationKind.GET:
-        found["outputs"] = (FieldPart(WHOLE, place_of(node), name="value"),)
-    return found
-
-
 def _properties(node: YamlNode, part: OperationPart) -> dict[str, Any]:
-    items = each_of(node)
-    if part.kind is OperationKind.READ and len(items) != 1:
-        node.wrong("`read` reads one property", "write an operation for each")
-    return {"target": Written("", place_of(node)), "properties": tuple(map(written, items))}
+    return {"target": Written("", place_of(node)), "properties": tuple(map(written, each_of(node)))}
 
 
 def _typed(kind: str) -> ReadPart:
@@ -406,7 +381,6 @@ def _parameters(node: YamlNode) -> tuple[str, ...]:
 
 
 _TARGET = _into("target", ros_name)
-_NODE = _into("node", lambda node: ros_name(node).text)
 _TIMEOUT = _into("timeout", positive)
 _OUTPUTS = _into("outputs", _outputs)
 KEYS: dict[str, dict[str, ReadPart]] = {
@@ -439,10 +413,13 @@ KEYS: dict[str, dict[str, ReadPart]] = {
         "timeout": _TIMEOUT,
         "suspend": _into("suspend", lambda node: node.choice("cancel", "go_on")),
     },
-    "set_parameter": {"set_parameter": _of_node, "node": _NODE, "value": _value, "timeout": _TIMEOUT},
-    "get_parameter": {"get_parameter": _of_node, "node": _NODE, "outputs": _output, "timeout": _TIMEOUT},
+    "set_parameter": {
+        "set_parameter": _into("target", written),
+        "node": _into("node", lambda node: ros_name(node).text),
+        "value": _value,
+        "timeout": _TIMEOUT,
+    },
     "refresh": {"refresh": _properties},
-    "read": {"read": _properties},
 }
 """The keys of each kind of operation, with their readers; the first names it."""
 COMMON: dict[str, ReadPart] = {
@@ -471,7 +448,7 @@ def read_operation(name: YamlNode, node: YamlNode) -> OperationPart:
     kind, own = OperationKind(kinds[0]), KEYS[kinds[0]]
     readers = {kinds[0]: own[kinds[0]], **COMMON, **own}
     entries = node.mapping(*readers, required=("value",) if kind is OperationKind.SET else ())
-    waits = kind in (OperationKind.SERVICE, OperationKind.SET, OperationKind.GET)
+    waits = kind in (OperationKind.SERVICE, OperationKind.SET)
     part = replace(part, kind=kind, timeout=CALL_TIMEOUT if waits else None)
     for key in sorted(entries, key=["parameters", *readers].index):
         part = replace(part, **readers[key](entries[key], part))
@@ -482,7 +459,7 @@ def read_operation(name: YamlNode, node: YamlNode) -> OperationPart:
 
 def _check_keys(part: OperationPart, entries: dict[str, YamlNode]) -> None:
     """Report keys without those that they need."""
-    if part.kind in (OperationKind.REFRESH, OperationKind.READ) and "parameters" in entries:
+    if part.kind is OperationKind.REFRESH and "parameters" in entries:
         entries["parameters"].wrong(f"`{part.kind}` takes no parameters", "leave `parameters` out")
     if "duration" in entries and "rate" not in entries:
         entries["duration"].wrong("`duration` needs `rate`", "write messages per second: rate: 10")

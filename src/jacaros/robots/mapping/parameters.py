@@ -1,8 +1,5 @@
-"""Parameters of nodes as properties: those of other nodes, and those of our own node, which a mapping declares.
-
-Launch files set our own, other nodes change them, agents perceive them. No definition gives the types of other nodes'
-parameters, so a mismatch is detected when a value arrives.
-"""
+"""Parameters of our own node, which a mapping declares: launch files set them, other nodes change them, agents perceive
+them as properties."""
 
 import dataclasses
 import json
@@ -10,8 +7,8 @@ import math
 from collections.abc import Mapping
 from shlex import quote
 
-from jacaros.artifacts.env.values import Atom, text
-from jacaros.robots.mapping.decoding import Convert, Unshowable, converted
+from jacaros.artifacts.env.values import Atom
+from jacaros.robots.mapping.decoding import Convert, converted
 from jacaros.robots.mapping.fields import AS_IT_IS, Conversion
 from jacaros.robots.mapping.host import MappingHost
 from jacaros.robots.mapping.properties import ParameterPart
@@ -21,15 +18,13 @@ from jacaros.robots.ros.errors import (
     ParameterRefused,
     ParameterUnknown,
     RosError,
-    ServiceUnavailable,
 )
 from jacaros.robots.ros.node import Capability
 from jacaros.robots.ros.parameter import DeclaredParameter, ParameterValue, fault_of
 from jacaros.runtime.files.yaml import Problem
 
 PATIENCE = 2.0
-"""Seconds to wait for a parameter: for the master of ROS 1 before the default applies, for a node before the next
-attempt."""
+"""Seconds to wait for the master of ROS 1 before the default applies."""
 
 
 def own_name(host: MappingHost, name: str) -> str:
@@ -49,35 +44,7 @@ def kept_by_master(ros: Backend) -> bool:
     )
 
 
-class _Parameter:
-    """What properties from parameters share.
-
-    Args:
-        host: the artifact.
-        part: its declaration.
-        name: name of the parameter in the graph.
-    """
-
-    def __init__(self, host: MappingHost, part: ParameterPart, name: str) -> None:
-        self._host, self._part, self._name = host, part, name
-        conversion = part.field.conversion if part.field is not None else AS_IT_IS
-        self._convert = parameter_converter(conversion, name)
-        self._reading = host.reading_of(part.name, part.policy)
-        self._closed = False
-
-    def _changed(self, values: Mapping[str, ParameterValue]) -> None:
-        if self._name in values:
-            self._take(values[self._name])
-
-    def _take(self, value: ParameterValue) -> None:
-        if not self._closed:
-            self._reading.take((self._convert(value),))
-
-    def close(self) -> None:
-        self._closed = True
-
-
-class OwnParameter(_Parameter):
+class OwnParameter:
     """A property from a parameter of our own node; it exists from the start.
 
     Where parameters are declared, other nodes can only set values that match the declaration. On ROS 1 the master
@@ -89,9 +56,19 @@ class OwnParameter(_Parameter):
     """
 
     def __init__(self, host: MappingHost, part: ParameterPart) -> None:
-        assert part.declaration is not None
+        self._host, self._part, self._name = host, part, own_name(host, part.parameter)
         self._declaration = part.declaration
-        super().__init__(host, part, own_name(host, part.parameter))
+        conversion = part.field.conversion if part.field is not None else AS_IT_IS
+        self._convert = parameter_converter(conversion)
+        self._reading = host.reading_of(part.name, part.policy)
+        self._closed = False
+
+    def close(self) -> None:
+        self._closed = True
+
+    def _take(self, value: ParameterValue) -> None:
+        if not self._closed:
+            self._reading.take((self._convert(value),))
 
     def declare(self) -> Problem | None:
         """Declare it and show its value. Return a problem, if any.
@@ -139,11 +116,13 @@ class OwnParameter(_Parameter):
             self._take(self._declaration.default)
 
     def _changed(self, values: Mapping[str, ParameterValue]) -> None:
+        if self._name not in values:
+            return
         if not kept_by_master(self._host.ros):
-            super()._changed(values)
-        elif self._name in values and self._declaration.read_only:
+            self._take(values[self._name])
+        elif self._declaration.read_only:
             self._ignore(values[self._name], "it is read-only")
-        elif self._name in values:
+        else:
             self._judge(values[self._name])
 
     def _judge(self, value: ParameterValue) -> None:
@@ -171,27 +150,12 @@ def _alike(value: ParameterValue, declaration: DeclaredParameter) -> ParameterVa
     return value
 
 
-def parameter_converter(conversion: Conversion, name: str) -> Convert:
-    """Return a function that converts the value of a parameter; of a list, each element.
-
-    Args:
-        conversion: names, units, rounding.
-        name: name of the parameter, for messages.
-
-    The function raises `Unshowable` if a number is expected and the value is not one.
-    """
+def parameter_converter(conversion: Conversion) -> Convert:
+    """Return a function that converts the value of a parameter; of a list, each element."""
     convert: Convert = _as_atom if conversion.kind == "atom" else converted(conversion)
     unrounded = converted(dataclasses.replace(conversion, digits=None))
-    if conversion == AS_IT_IS:
-        return convert
-    named = {value for value, _ in conversion.names}
 
     def element(value: ParameterValue) -> object:
-        is_number = isinstance(value, int | float) and not isinstance(value, bool)
-        is_named = isinstance(value, str | bool) and value in named
-        if conversion.needs_number and not is_number and not is_named:
-            told = f"parameter `{name}`: expected a number, found {text(value, quoted=True)}"
-            raise Unshowable(name, told, "leave out its unit, scale, offset and round", "wrong_value")
         # Infinity has no integer; the receiver of the value refuses it.
         endless = isinstance(value, float) and not math.isfinite(value)
         return unrounded(value) if endless else convert(value)
@@ -201,74 +165,3 @@ def parameter_converter(conversion: Conversion, name: str) -> Convert:
 
 def _as_atom(value: ParameterValue) -> object:
     return Atom(value) if isinstance(value, str) else value
-
-
-RETRY = 1.0
-"""Seconds between two attempts."""
-
-
-PATIENT = 2
-"""Number of attempts at a missing node that are not logged: it may be starting."""
-
-
-class NodeParameter(_Parameter):
-    """A property from a parameter; it exists while the node reports it.
-
-    Args:
-        host: the artifact.
-        part: its declaration.
-    """
-
-    def __init__(self, host: MappingHost, part: ParameterPart) -> None:
-        super().__init__(host, part, part.parameter)
-        self._node = host.ros.resolve(host.robot_topic(part.node))
-        self._vain = 0
-        try:
-            self._parameters = host.ros.parameters(self._node)
-            self._events = Capability.PARAMETER_EVENTS in host.ros.capabilities
-            if self._events:
-                host.at_dispose(self._parameters.on_change(self._changed))
-        except CapabilityMissing as error:
-            host.fail(f"{host.mapping.where(part.place)}: {error}", "ros_error", host.name)
-        host.start(host.run_process, self._follow)
-
-    async def _follow(self) -> None:
-        """Request the value until the node answers, and forever if changes are not reported."""
-        host, part = self._host, self._part
-        while not self._closed:
-            try:
-                value = await host.step(self._parameters.get(part.parameter, PATIENCE))
-            except RosError as error:
-                self._lose(error)
-                await host.sleep(RETRY)
-                continue
-            self._vain = 0
-            self._take(value)
-            if self._events:
-                return
-            await host.sleep(1.0 / part.rate)
-
-    def _take(self, value: ParameterValue) -> None:
-        try:
-            super()._take(value)
-        except Unshowable as error:
-            self._reading.withdraw()
-            part = self._part
-            told = f"`{part.name}` is not shown: {error}"
-            self._host.report_once((part.name, error.functor), part.place, told, error.help)
-
-    def _lose(self, error: RosError) -> None:
-        self._reading.withdraw()
-        part = self._part
-        if isinstance(error, ParameterUnknown):
-            told = f"`{part.name}` is unknown: {error}"
-            self._host.report_once(part.name, part.place, told, "write another name")
-        if isinstance(error, ServiceUnavailable):
-            self._vain += 1
-        if self._vain == PATIENT:
-            self._host.report_once(
-                (part.name, "node"),
-                part.place,
-                f"`{part.name}` is not known yet: node {self._node} does not answer; still trying",
-                "is the node running, and is this its name?",
-            )

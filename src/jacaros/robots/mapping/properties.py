@@ -317,7 +317,7 @@ def _of_transform(field: FieldPart) -> Iterator[Problem]:
         yield field.place.problem(told, f"units of {wanted} are {', '.join(units_of(wanted))}")
 
 
-# Parameters: of other nodes, and of our own.
+# Parameters of our own node.
 
 
 def _field(node: YamlNode) -> FieldPart | None:
@@ -335,51 +335,39 @@ def _field(node: YamlNode) -> FieldPart | None:
 
 @dataclass(frozen=True, slots=True)
 class ParameterPart:
-    """A property from a parameter of a node.
+    """A property from a parameter of our own node.
 
     Attributes:
         parameter: its name.
-        node: the node; empty for our own.
-        declaration: declaration of a parameter of our own.
-        rate: polling rate for middlewares that do not report changes.
+        declaration: declared type, default and limits.
     """
 
     name: str
     place: FilePosition
     parameter: Annotated[str, entry(YamlNode.text)]
-    node: Annotated[str, entry(lambda node: ros_name(node).text)] = ""
+    declaration: DeclaredParameter
     field: Annotated[FieldPart | None, entry(_field, "fields")] = None
-    rate: Annotated[float, entry(positive)] = 1.0
     description: Annotated[str, entry(YamlNode.text)] = ""
-    declaration: DeclaredParameter | None = None
     policy: ReadingPolicy = ALWAYS
 
 
-_SHOWN = ("parameter", "fields", "dead_band", "description")
-OTHER = ("node", *_SHOWN, "rate")
-OWN = ("default", *_SHOWN, "minimum", "maximum", "read_only")
+OWN = ("default", "parameter", "fields", "dead_band", "description", "minimum", "maximum", "read_only")
 
 
 def read_parameter(name: YamlNode, node: YamlNode) -> ParameterPart:
-    """Read a property from a parameter, of another node or of our own."""
-    part = ParameterPart(belief_name(name), place_of(name), str(name.value))
-    if not isinstance(node.value, dict):
-        return replace(part, declaration=_declaration(node, {}))  # short for {default: ...}
-    own = not {"node", "rate"} & {str(key) for key in node.value}
-    entries = node.mapping(*(OWN if own else OTHER), required=() if own else ("node",))
-    if own and "default" not in entries:
-        node.wrong(
-            f"the parameter `{name.value}` has neither a node nor a default",
-            "write the node that has it, node: controller_server, or its value if it is our own, default: 0.5",
-        )
+    """Read a property from a parameter of our own node."""
+    entries = {"default": node}  # a value is short for {default: ...}
+    if isinstance(node.value, dict):
+        entries = node.mapping(*OWN, required=("default",))
+    declaration = _declaration(entries["default"], entries) if "default" in entries else DeclaredParameter(0)
+    part = ParameterPart(belief_name(name), place_of(name), str(name.value), declaration)
     part = with_entries(part, entries)
-    declaration = _declaration(entries["default"], entries) if "default" in entries else None
-    if part.field is not None and declaration is not None:
+    if part.field is not None and "default" in entries:
         _require_shown(entries["default"], part.field, declaration.default)
     band = {key: each for key, each in entries.items() if key == "dead_band"}
     policy = read_policy(band, (part.field,) if part.field is not None else None)
     # No field has a replacement for numbers that are not finite.
-    return replace(part, declaration=declaration, policy=replace(policy, finite=True))
+    return replace(part, policy=replace(policy, finite=True))
 
 
 def _require_shown(node: YamlNode, field: FieldPart, default: ParameterValue) -> None:

@@ -1,6 +1,5 @@
 """Operations of mapped artifacts: publishing, services, actions, parameters, on the graph inside the process."""
 
-import math
 from collections.abc import Callable
 
 import pytest
@@ -337,60 +336,21 @@ async def test_frames_in_goals_get_the_prefix_of_the_robot(lab: Lab, artifact: A
 PARAMETERS = """
 operations:
   limit: {parameters: [v], set_parameter: speed, node: lab, value: {value: $v, unit: centimetres}}
-  limited: {get_parameter: speed, node: lab, outputs: [v]}
   set: {parameters: [v], set_parameter: speed, node: lab, value: $v}
-  lost: {get_parameter: spede, node: lab}
+  lose: {set_parameter: spede, node: lab, value: 1}
 """
 
 
 @made(mapped(PARAMETERS))
-async def test_parameters_of_nodes_are_set_and_given(lab: Lab, artifact: ArtifactId) -> None:
+async def test_parameters_of_nodes_are_set(lab: Lab, artifact: ArtifactId) -> None:
     own = lab.backend.parameters()
     own.declare("speed", DeclaredParameter(0.5, maximum=2.0))
     await lab.do(artifact, "limit", 75)
     assert await own.get("speed") == 0.75
     await lab.do(artifact, "set", 1)
-    out = Out()
-    await lab.do(artifact, "limited", out)
-    assert out.value == 1.0
+    assert await own.get("speed") == 1.0
     assert (await lab.call(artifact, "set", 3)).reason == "parameter_refused(speed)"
-    assert (await lab.call(artifact, "lost", Out())).reason == "parameter_unknown(spede)"
-
-
-TURN = """
-operations:
-  turn: {get_parameter: turn, node: lab, outputs: [{path: ., unit: degrees, round: 0, names: {none: nowhere}}]}
-"""
-
-
-@made(mapped(TURN))
-async def test_a_parameter_that_is_not_a_number_has_no_unit(lab: Lab, artifact: ArtifactId) -> None:
-    own, out = lab.backend.parameters(), Out()
-    own.declare("turn", DeclaredParameter("left"))
-    failed = await lab.call(artifact, "turn", out)
-    assert failed.reason == 'wrong_value("turn")'
-    assert 'parameter `turn`: expected a number, found "left": leave out its unit' in failed.message
-    await own.set("turn", "none")
-    await lab.do(artifact, "turn", out)
-    assert out.value == Atom("nowhere")
-    own.withdraw("turn")
-    own.declare("turn", DeclaredParameter([0.0, math.pi]))
-    await lab.do(artifact, "turn", out)
-    assert out.value == [0, 180]
-
-
-@pytest.mark.world("empty")
-async def test_read_gives_the_newest_values(lab: Lab) -> None:
-    text = """
-properties:
-  pose: {topic: odom, fields: [pose.pose.position.x, {path: pose.pose.orientation, as: yaw, unit: degrees}]}
-operations:
-  where: {read: pose}
-"""
-    artifact = await lab.make(mapped(text))
-    x, yaw = Out(), Out()
-    await lab.do(artifact, "where", x, yaw)
-    assert (x.value, yaw.value) == (0.0, 0.0)
+    assert (await lab.call(artifact, "lose")).reason == "parameter_unknown(spede)"
 
 
 async def test_operations_have_their_arities_and_names_of_parameters(lab: Lab) -> None:

@@ -84,7 +84,7 @@ async def test_initial_values(lab: Lab) -> None:
 
 
 async def test_on_demand_values_are_shown_by_operations_only_which_fail_without_a_message(lab: Lab) -> None:
-    text = points("mode: on_demand") + "\noperations: {look: {refresh: a}, get: {read: a}}"
+    text = points("mode: on_demand") + "\noperations: {look: {refresh: a}}"
     t = await talk(lab, text)
     assert (await t.lab.call(t.artifact, "look")).reason == "no_message(5)"
     await t.points(1, 2)
@@ -360,41 +360,6 @@ async def test_stamps_of_latched_messages_may_be_old(lab: Lab, qos: str, told: i
     await settle()
     assert t.held == [(2.0,)]
     assert sum("differs from our clock" in line for line in t.lab.logged) == told
-
-
-async def test_parameters_of_a_missing_node_are_logged_once(lab: Lab) -> None:
-    t = await talk(lab, "parameters: {a: {node: lob, parameter: speed}}")
-    await t.lab.sleep(25)
-    [told] = t.lab.logged
-    assert told.endswith(
-        "m.yaml:1:14: `a` is not known yet: node /lob does not answer; still trying\n"
-        "    1 | parameters: {a: {node: lob, parameter: speed}}\n"
-        "                     ^\n"
-        "  = help: is the node running, and is this its name?"
-    )
-
-
-async def test_parameters_of_nodes_are_properties_that_follow(lab: Lab) -> None:
-    from jacaros.robots.ros.parameter import DeclaredParameter
-
-    text = "parameters: {a: {node: lab, parameter: speed, fields: {path: ., unit: centimetres}}}"
-    t = await talk(lab, text)
-    await t.lab.sleep(3)
-    assert t.held == []
-    own = t.lab.backend.parameters()
-    own.declare("speed", DeclaredParameter(0.5))
-    await t.lab.sleep(2)
-    assert t.held == [(50.0,)]
-    await own.set("speed", 0.75)
-    await settle()
-    assert t.held == [(75.0,)]
-    own.withdraw("speed")
-    own.declare("speed", DeclaredParameter("fast"))
-    await t.lab.sleep(2)
-    assert t.held == []
-    told = "\n".join(t.lab.logged)
-    assert '`a` is not shown: parameter `speed`: expected a number, found "fast"' in told
-    assert "Traceback" not in told
 
 
 async def test_otherwise_replaces_a_missing_element(lab: Lab) -> None:

@@ -162,15 +162,15 @@ frames: {a: {target: map, source: s, fields: [x, w]}}
   1:50: a transform has no `w` | it has x, y, z, roll, pitch, yaw, stamp
 operations: {go: {topic: t}}
   1:14: the operation `go` does not name what it does | write one of publish, service, action, set_parameter,
-  get_parameter, refresh, read
+  refresh
 operations: {go: {parameters: [a]}}
   1:14: the operation `go` does not name what it does | write one of publish, service, action, set_parameter,
-  get_parameter, refresh, read
+  refresh
 operations: {go: {servise: t}}
   1:14: the operation `go` does not name what it does | did you mean `service`?
 operations: {go: {publish: t, service: s}}
   1:14: the operation `go` has publish and service | write one of publish, service, action, set_parameter,
-  get_parameter, refresh, read
+  refresh
 operations: {go: {publish: t, request: {}}}
   1:31: 'go' has no key 'request' | known keys: publish, parameters, description, uses, expect, meanwhile, type, fields,
   qos, rate, duration, at_end
@@ -210,18 +210,10 @@ operations: {go: {action: a, suspend: pause}}
   1:39: 'suspend' is 'pause' | choose one of: cancel, go_on
 operations: {look: {refresh: pose}}
   1:30: unknown property `pose` | properties from topics and frames: none
-properties: {a: t}\noperations: {look: {read: a}}
-  2:27: the number of values of `a` is not known | give `a` fields
-operations: {go: {get_parameter: a}}
-  1:34: `go` names no node, and `a` is not a parameter of our own | write the node that has the parameter: node:
-  controller_server
 parameters: {a: 1, b: {default: 2, parameter: c}}\noperations: {go: {set_parameter: b, value: 1}}
   2:34: `go` names no node, and `b` is not a parameter of our own | our own parameters: a, c
 parameters: {a: {minimum: 1}}
-  1:17: the parameter `a` has neither a node nor a default | write the node that has it, node: controller_server, or
-  its value if it is our own, default: 0.5
-parameters: {a: {node: n, default: 1}}
-  1:27: 'a' has no key 'default' | known keys: node, parameter, fields, dead_band, description, rate
+  1:17: 'a' lacks the key 'default' | add 'default: ...'
 parameters: {a: }
   1:14: the parameter has no default | write a number, true or false, a text, or a list of them
 parameters: {a: [1, 2.5]}

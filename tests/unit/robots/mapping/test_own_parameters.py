@@ -6,7 +6,7 @@ import pytest
 from mapped_lab import mapped, settle
 from robot_lab import Lab, made
 
-from jacaros.artifacts import ArtifactId, Atom, Out
+from jacaros.artifacts import ArtifactId, Atom
 from jacaros.artifacts.env.errors import OperationFailed
 from jacaros.robots.ros.errors import ParameterRefused
 from jacaros.robots.ros.parameter import DeclaredParameter
@@ -20,7 +20,6 @@ parameters:
   count: 3
 operations:
   drive_at: {parameters: [v], set_parameter: speed, value: $v}
-  speed_now: {get_parameter: speed, outputs: [v]}
 """
 
 
@@ -61,9 +60,6 @@ async def test_agents_change_them_by_operations(lab: Lab, artifact: ArtifactId) 
     await settle()
     assert held(lab, artifact, "speed") == [(1.0,)]
     assert await lab.backend.parameters().get("speed") == 1.0
-    out = Out()
-    await lab.do(artifact, "speed_now", out)
-    assert out.value == 1.0
     assert (await lab.call(artifact, "drive_at", 7)).reason == "parameter_refused(speed)"
 
 

@@ -109,7 +109,7 @@ def test_problems_are_reported_once_in_line_order_and_names_suggested(
             'write tf_prefix: ""',
         ),
         (
-            "parameters:\n  top: {node: wrld, parameter: speed}\n",
+            "operations:\n  limit: {set_parameter: speed, node: wrld, value: 1}\n",
             "robot.yaml:2:3: unknown node `/wrld`",
             "did you mean `/world`?",
         ),

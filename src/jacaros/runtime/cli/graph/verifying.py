@@ -81,14 +81,10 @@ async def problems_of(joined: Joined, part: ArtifactPart, frames: dict[str, str]
         for each in type_problems(part, joined.backend)
         if not (each.message.endswith(UNCERTAIN) and (each.line, each.column) in reported)
     ]
-    nodes = [(each.node, each.parameter, each.place) for each in part.parameters if each.node]
-    nodes += [
-        (each.node, each.target.text, each.place)
-        for each in part.operations
-        if each.kind in (OperationKind.SET, OperationKind.GET) and each.node
-    ]
-    for node, parameter, place in nodes:
-        found += filter(None, [await _of_parameter(names, node, parameter, place)])
+    for each in part.operations:
+        if each.kind is OperationKind.SET and each.node:
+            wrong = await _of_parameter(names, each.node, each.target.text, each.place)
+            found += filter(None, [wrong])
     return sorted(set(found), key=lambda problem: (problem.line, problem.column, problem.message))
 
 
