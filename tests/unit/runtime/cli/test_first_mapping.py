@@ -214,12 +214,6 @@ def test_a_joint_trajectory_action_takes_its_points(types: StoredInterfaces) -> 
     assert "fields: {positions: $1, time_from_start: $2}" in text
 
 
-def test_an_aborted_goal_has_a_named_code_if_the_result_has_constants(types: StoredInterfaces) -> None:
-    line = "code: {path: error_code, as: name}"
-    assert line in checked(types, acting(types, "follow", "arm/follow", "odd_msgs/action/Follow"))
-    assert line not in checked(types, acting(types, "sort", "sort", "odd_msgs/action/Sort"))
-
-
 @pytest.mark.parametrize(
     ("type_name", "field"),
     [

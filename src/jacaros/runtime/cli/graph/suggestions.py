@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from jacaros.robots.mapping.fields import RESERVED
-from jacaros.robots.mapping.interfaces import Interfaces, constants
+from jacaros.robots.mapping.interfaces import Interfaces
 from jacaros.robots.ros.backend import TopicInfo
 from jacaros.robots.ros.fields import FieldType
 from jacaros.robots.ros.guarded import VELOCITIES
@@ -216,7 +216,7 @@ def acting(types: Interfaces, name: str, action: str, type_name: str) -> Mapping
     inputs, body = _filled(types, goal_type(type_name), "goal")
     outputs = _results(types, result_type(type_name))
     lines = [*_parameters(inputs), f"action: {action}", f"type: {type_name}", *body, *_outputs(outputs)]
-    lines += [*_code(types, result_type(type_name)), *_feedback(types, name, type_name)]
+    lines += _feedback(types, name, type_name)
     lines += [_SUCCESS[type_name]] if type_name in _SUCCESS else []
     lines.append("suspend: cancel   # .suspend cancels the goal and stops the robot; .resume sends it again")
     return MappingEntry("operations", name, _call(name, [*inputs, *outputs]), tuple(lines))
@@ -227,14 +227,6 @@ _SUCCESS = {
     "irobot_create_msgs/action/Undock": "success: {path: is_docked, is: false}",
 }
 """Fields that decide, apart from the status, whether an action succeeded."""
-
-
-def _code(types: Interfaces, result: str) -> list[str]:
-    """Return the key that gives error codes the name of their constant; other codes stay numbers."""
-    known = list(constants(types, result).values())
-    if "error_code" not in types.fields(result) or not known or len(set(known)) < len(known):
-        return []
-    return ["code: {path: error_code, as: name}   # of aborted(Code,Text): the constant"]
 
 
 def _feedback(types: Interfaces, name: str, type_name: str) -> list[str]:
