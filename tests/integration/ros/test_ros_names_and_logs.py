@@ -1,7 +1,6 @@
-"""A run as a node among others: its names, its log, its diagnostics, and the clock of a simulator."""
+"""A run as a node among others: its names, its log, and the clock of a simulator."""
 
 from collections.abc import Callable
-from typing import Any
 
 import pytest
 from graphs import ProcessPeer
@@ -11,10 +10,9 @@ LOG = {"ros1": "rosgraph_msgs/msg/Log", "ros2": "rcl_interfaces/msg/Log"}
 LEVELS = {"ros1": {"info": 2, "warn": 4, "error": 8}, "ros2": {"info": 20, "warn": 30, "error": 40}}
 
 
-def test_lines_go_to_rosout_and_the_state_to_diagnostics_under_our_name(kind: str, run_agents, peer) -> None:
+def test_lines_go_to_rosout_under_our_name(kind: str, run_agents, peer) -> None:
     monitor = peer("monitor")
     monitor.subscribe("/rosout", LOG[kind], depth=1000)
-    monitor.subscribe("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
     run_agents("talker.asl", "--node-name", "speaker")
 
     def logged(level: str, text: str) -> bool:
@@ -29,27 +27,12 @@ def test_lines_go_to_rosout_and_the_state_to_diagnostics_under_our_name(kind: st
     wait_until(lambda: logged("error", "by the artifact"), "what the artifact writes")
     wait_until(lambda: logged("warn", "impossible"), "the goal that failed")
 
-    def statuses() -> dict[str, Any]:
-        return {
-            status["name"]: status
-            for message in monitor.received("/diagnostics")
-            for status in message["status"]
-        }
-
-    wait_until(lambda: "speaker: agent talker" in statuses(), "the agent's status")
-    connection = statuses()["speaker: connection"]
-    assert connection["message"] == "connected"
-    assert {"key": "middleware", "value": kind} in connection["values"]
-
 
 def test_names_are_remapped(run_agents: Callable[..., Agents], peer: Callable[[str], ProcessPeer]) -> None:
-    agents = run_agents("talker.asl", "--remap", "/odom:=/elsewhere/odom", "--no-diagnostics", "--no-rosout")
-    monitor = peer("monitor")
-    monitor.subscribe("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
+    agents = run_agents("talker.asl", "--remap", "/odom:=/elsewhere/odom", "--no-rosout")
     robot = peer("robot")
     robot.advertise("/elsewhere/odom", "nav_msgs/msg/Odometry")
     agents.until_line("hears /elsewhere/odom")
-    assert monitor.received("/diagnostics") == []
 
 
 @pytest.mark.only("ros1", "ros2")

@@ -99,11 +99,6 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
     default=None,
 )
 @option(
-    "--diagnostics/--no-diagnostics",
-    "Publish the state of the agents and the connection on /diagnostics (default: on real graphs).",
-    default=None,
-)
-@option(
     "--record FILE",
     "Record the run to FILE: JSON lines, compressed (FILE.gz), or for Foxglove (FILE.mcap, needs jacaros[mcap]).",
     PATH,

@@ -39,7 +39,6 @@ class RunOptions(GraphAddress):
         explain: keep the history of the run from its start, for `Mas.explain` and ``.why``.
         plain: run plans and rules as the language defines them, without generated code. The default is what
             ``JACAROS_PLAIN`` in the environment says.
-        diagnostics: publish the state of agents and connection on ``/diagnostics``. None: on real graphs only.
     """
 
     fast: bool = False
@@ -55,7 +54,6 @@ class RunOptions(GraphAddress):
     ros_clock: bool = False
     orphans: "OrphanPolicy" = "cancel"
     rosout: bool | None = None
-    diagnostics: bool | None = None
     mappings: Sequence[str | Path] = ()
     guard: bool = False
     restricted: bool = False
@@ -71,11 +69,6 @@ class RunOptions(GraphAddress):
     def wants_rosout(self) -> bool:
         """Whether to publish on ``/rosout``."""
         return self.real_graph if self.rosout is None else self.rosout
-
-    @property
-    def wants_diagnostics(self) -> bool:
-        """Whether to publish on ``/diagnostics``."""
-        return self.real_graph if self.diagnostics is None else self.diagnostics
 
     def check(self) -> None:
         """Check for options that exclude each other.

@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from jacaros.look.why.explanation import Explanation
     from jacaros.runtime.input import LineInput
     from jacaros.runtime.mas.debugging.debugger import Debugger
-    from jacaros.runtime.mas.diagnostics import Diagnostics
     from jacaros.runtime.mas.environment import RunEnvironment
     from jacaros.runtime.mas.history.history import History
     from jacaros.runtime.trace import Tracer
@@ -88,7 +87,7 @@ class System:
         self.options = options = options or RunOptions()
         options.check()
         if options.wants_rosout:
-            from jacaros.runtime.mas.diagnostics import RosoutConsole  # here: only for runs on a real graph
+            from jacaros.runtime.mas.rosout import RosoutConsole  # here: only for runs on a real graph
 
             console = RosoutConsole(console, lambda: self.ros.joined)
         self.console: RunConsole = HeardConsole(console)
@@ -105,7 +104,6 @@ class System:
         self._history: History | None = None
         self._keeps_history = False
         self._debugger: Debugger | None = None
-        self._diagnostics: Diagnostics | None = None
         source, span, log = deployment.world, deployment.world_span, self.console.log
         self.ros = RosGraph(options, clock, deployment.name, source, log, self.scheduler.hurry, span)
         self._modules = ProjectModules(deployment.base_path, *deployment.source_paths)
@@ -240,8 +238,6 @@ class System:
         programs = lifecycle.programs.load_all(self.deployment.agents)
         lifecycle.check(self.deployment.agents)
         await self.ros.start()
-        if self.options.wants_diagnostics:
-            self._publish_diagnostics()
         if self._has_environment and self._has_workspace_setup():
             await self.run_environment().set_up(self.deployment)
         await self.ros.guard()
@@ -259,18 +255,6 @@ class System:
 
             for warning in readings(files):
                 self.console.log(warning.render(), "warning")
-
-    def _publish_diagnostics(self) -> None:
-        from jacaros.robots.ros.errors import UnknownInterface
-        from jacaros.runtime.mas.diagnostics import Diagnostics  # here: only for runs on a real graph
-
-        diagnostics = Diagnostics(self.ros.backend(), self.clock, lambda: self.directory, lambda: self.error)
-        try:
-            diagnostics.start()
-        except UnknownInterface as missing:
-            self.console.log(f"warning: cannot publish /diagnostics: {missing}", "warning")
-        else:
-            self._diagnostics = diagnostics
 
     def _has_workspace_setup(self) -> bool:
         """Return whether the environment is created at the start, also to report errors in the project's own artifacts."""
@@ -411,8 +395,6 @@ class System:
             for closer in self._closers:
                 steps.push_async_callback(closer)
             steps.push_async_callback(self.ros.close)
-            if self._diagnostics is not None:
-                steps.callback(self._diagnostics.close)
             if self._run_environment is not None:
                 steps.push_async_callback(self._run_environment.environment.close)
             for host in reversed(hosts):

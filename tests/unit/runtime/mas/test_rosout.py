@@ -3,7 +3,7 @@
 from typing import Any
 
 from jacaros.robots.ros.errors import CapabilityMissing
-from jacaros.runtime.mas.diagnostics import RosoutConsole
+from jacaros.runtime.mas.rosout import RosoutConsole
 
 
 class Written:

@@ -50,13 +50,11 @@ def test_an_address_for_its_kind_of_graph_is_accepted() -> None:
     RunOptions(ros="ros1", master="http://127.0.0.1:11311", ros_clock=True).check()
 
 
-def test_logs_and_diagnostics_go_to_real_graphs_by_default() -> None:
+def test_logs_go_to_real_graphs_by_default() -> None:
     assert not RunOptions().wants_rosout
-    assert not RunOptions().wants_diagnostics
     assert RunOptions(ros="ros2").wants_rosout
-    assert RunOptions(ros="ros1").wants_diagnostics
     assert not RunOptions(ros="ros1", rosout=False).wants_rosout
-    assert RunOptions(diagnostics=True).wants_diagnostics
+    assert RunOptions(rosout=True).wants_rosout
 
 
 def test_a_keyword_replaces_a_field_of_the_options() -> None:
