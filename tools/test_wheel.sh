@@ -65,7 +65,7 @@ grep -q '^\[' patrol.log
 grep -q '</html>' patrol.html
 grep -q '"scan"\|"pose"\|"frame"' patrol.jsonl
 "$jacaros" check examples/04_patrol
-"$jacaros" sim office --hash --for 2
+"$jacaros" sim office --ros memory --clock fast --for 2
 
 # What needs an extra says which one, and shows no traceback.
 missing() {

@@ -1,20 +1,14 @@
 """Options of commands that join a ROS graph: its address, and the names used in it."""
 
-import asyncio
-import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
-from jacaros.robots.ros.handoff import in_thread
 from jacaros.robots.ros.middleware import ROS_KINDS
 from jacaros.runtime.cli.options import F, VariableOption, with_options
 from jacaros.runtime.cli.usage import usage_error
-
-if TYPE_CHECKING:
-    from jacaros.robots.ros.action_client import OrphanPolicy
 
 
 class RosKind(click.Choice[str]):
@@ -25,33 +19,23 @@ class RosKind(click.Choice[str]):
         return value if ":" in value else super().convert(value, param, ctx)
 
 
-def ros_option(
-    help: str, kinds: Sequence[str] = ROS_KINDS, required: bool = False, but_with: str = ""
-) -> Callable[[F], F]:
+def ros_option(help: str, kinds: Sequence[str] = ROS_KINDS, required: bool = False) -> Callable[[F], F]:
     """Return the option ``--ros``.
 
     Args:
         help: help text of the option.
         kinds: kinds of graph that the command accepts.
         required: there is no default; otherwise the default is ``memory``.
-        but_with: a flag with which a required option may be omitted.
     """
-
-    def needed(context: click.Context, option: click.Parameter, value: str | None) -> str | None:
-        if value is None and required and not context.params.get(but_with):
-            raise click.MissingParameter(ctx=context, param=option)
-        return value
-
+    settings: dict[str, Any] = {"required": True} if required else {"default": "memory", "show_default": True}
     return click.option(
         "--ros",
         cls=VariableOption,
         type=RosKind(kinds),
-        default=None if required else "memory",
-        callback=needed,
         envvar="JACAROS_ROS",
-        show_default=not required,
         show_envvar=True,
         help=help,
+        **settings,
     )
 
 
@@ -152,38 +136,11 @@ parameter_options = with_options(*_PARAMETERS)
 """The options that set parameters of our node."""
 orphans_option = click.option(
     "--orphans",
-    type=click.Choice(["cancel", "keep", "ask"]),
+    type=click.Choice(["cancel", "keep"]),
     default="cancel",
     help="What to do with action goals that an earlier run of this node left behind, for example because it was "
-    "killed: cancel them (default), keep them, or ask on the terminal.",
+    "killed: cancel them (default), or keep them.",
 )
-
-
-def orphan_policy(written: str) -> "OrphanPolicy":
-    """Return the policy for a value of ``--orphans``; without a terminal, ``ask`` keeps the goals."""
-    if written == "cancel":
-        return "cancel"
-    if written == "keep" or not (sys.stdin.isatty() and sys.stderr.isatty()):
-        return "keep"
-    one_by_one = asyncio.Lock()
-
-    async def ask(question: str) -> bool:
-        async with one_by_one:
-            return await _ask(question)
-
-    return ask
-
-
-async def _ask(question: str) -> bool:
-    """Ask on the terminal, in a daemon thread, so that the process can exit meanwhile."""
-
-    def read() -> str:
-        print(f"{question} [Y/n] ", end="", file=sys.stderr, flush=True)
-        return sys.stdin.readline()
-
-    answer = await in_thread(asyncio.get_running_loop(), read, "orphans")
-    # At the end of the input no user can answer: an empty answer without a line feed keeps the goal.
-    return answer.strip().lower() in ("y", "yes") or answer == "\n"
 
 
 def read_remaps(written: tuple[str, ...]) -> dict[str, str]:

@@ -43,7 +43,7 @@ COMMANDS = {
     "replay": ("jacaros.runtime.cli.recordings:replay", "Replay a recorded run against a changed program."),
     "test": ("jacaros.runtime.cli.test", "Run the tests of agent programs."),
     "sim": ("jacaros.runtime.cli.sim", "Run a robot world as a separate ROS node."),
-    "world": ("jacaros.runtime.cli.world", "Check, show, create and export world files."),
+    "world": ("jacaros.runtime.cli.world", "Show and export world files."),
     "guard": ("jacaros.runtime.cli.guard", "Stop the robot when its agents no longer can."),
     "ros": ("jacaros.runtime.cli.ros", "Inspect a live ROS graph, and write mapping files for it."),
     "describe": ("jacaros.runtime.cli.describe", "Describe an artifact type, a mapping file or a project."),

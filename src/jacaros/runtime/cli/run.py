@@ -16,7 +16,6 @@ from jacaros.runtime.cli.graph_options import (
     faults_option,
     graph_options,
     noise_option,
-    orphan_policy,
     orphans_option,
     parameter_options,
     read_remaps,
@@ -128,7 +127,6 @@ def command(
     file: Path,
     clock: str | None,
     remap: tuple[str, ...],
-    orphans: str,
     param: tuple[str, ...],
     params_file: tuple[Path, ...],
     quiet: bool,
@@ -150,7 +148,6 @@ def command(
             QuestionPattern(each)  # refuses what is not an event, a goal or a belief
     options = RunOptions(
         remap=read_remaps(remap) if remap else {},
-        orphans=orphan_policy(orphans),
         explain=bool(explained),
         show_world=outputs.ground_truth is not None,
         **given,

@@ -29,11 +29,10 @@ from jacaros.runtime.files.texts import is_file
     epilog=examples(
         "jacaros sim house --ros ros2",
         "jacaros sim world.yaml --ros ros2 --speed 5",
-        "jacaros sim maze --hash",
     ),
 )
 @click.argument("world")
-@ros_option("ROS graph to join.", required=True, but_with="only_hash")
+@ros_option("ROS graph to join.", required=True)
 @world_options
 @option("--for S", "Exit after S seconds.", float, name="seconds")
 @ground_truth_option
@@ -41,12 +40,6 @@ from jacaros.runtime.files.texts import is_file
 @noise_option
 @faults_option
 @option("--full-battery", "Keep all batteries full.")
-@option(
-    "--hash",
-    "Drive all robots for a minute (or --for S seconds), print a hash of their poses and scans, and exit. The hash is "
-    "the same on every machine.",
-    name="only_hash",
-)
 @option(
     "--clock",
     "Clock to run on: real, or fast (virtual time; with --ros memory only).",
@@ -64,14 +57,13 @@ from jacaros.runtime.files.texts import is_file
 )
 def command(
     world: str,
-    ros: str | None,
+    ros: str,
     remap: tuple[str, ...],
     seconds: float | None,
     ground_truth: Path | None,
     seed: int | None,
     noise: float | None,
     faults: Path | None,
-    only_hash: bool,
     full_battery: bool,
     clock: str,
     publish_clock: bool,
@@ -84,11 +76,6 @@ def command(
     loaded = World.load(Path(world) if is_file(Path(world)) else world, seed, faults, noise)
     if full_battery:
         loaded = World(with_full_batteries(loaded.description), faults=loaded.faults.by_name.values())
-    if only_hash:
-        from jacaros.robots.world.physics.fingerprint import fingerprint
-
-        click.echo(fingerprint(loaded, 60.0 if seconds is None else seconds))
-        return
     from jacaros.robots.ros.node import to_stderr
     from jacaros.robots.world import serve
 
@@ -98,7 +85,6 @@ def command(
         help = "--clock fast already runs as fast as the machine can"
         raise usage_error("--speed needs --clock real", help)
     time: Clock = VirtualClock() if clock == "fast" else WallClock(speed or 1.0)
-    assert ros is not None  # the option requires it
     address = GraphAddress(ros, remap=read_remaps(remap), **graph)
     address.check()
     if ground_truth is not None:

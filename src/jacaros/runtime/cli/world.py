@@ -1,50 +1,29 @@
-"""``jacaros world check|show|new|export``: world files."""
+"""``jacaros world show|export``: pictures of worlds, and their maps."""
 
 import sys
 from pathlib import Path
 
 import click
 
-from jacaros.robots.world.data.world import WorldDescription, WorldError
+from jacaros.robots.world.data.world import WorldDescription
 from jacaros.robots.world.files.world import load_world
 from jacaros.runtime.cli.options import PATH, option
 from jacaros.runtime.cli.outputs import check_output, write_output
 from jacaros.runtime.cli.usage import counted, examples, usage_error
 from jacaros.runtime.output import beneath
 
-_IMAGES = (".pgm", ".png")
 _WIDTH = 640
 """Default width of a picture, in pixels."""
-_RESOLUTION = 0.05
-"""Default resolution of an image without a map file, in metres per pixel."""
 _ROWS = 48
 """Height of a picture in characters when the output is not a terminal, in lines."""
 
 
 @click.group("world")
 def command() -> None:
-    """Check, show, create and export world files.
+    """Show and export world files.
 
     WORLD is a world file, a map file of ROS's map_server, or the name of a shipped world.
     """  # fmt: skip
-
-
-@command.command(
-    "check",
-    short_help="Report all mistakes in world files.",
-    epilog=examples("jacaros world check world.yaml"),
-)
-@click.argument("worlds", metavar="WORLD...", nargs=-1, required=True)
-def check_command(worlds: tuple[str, ...]) -> int:
-    """Report all mistakes in each WORLD, or print a summary. The exit code is 1 if there is a mistake."""
-    code = 0
-    for name in worlds:
-        try:
-            click.echo(_summary(load_world(name)))
-        except WorldError as wrong:
-            click.echo(str(wrong))
-            code = 1
-    return code
 
 
 @command.command(
@@ -88,46 +67,6 @@ def _png(svg: str) -> bytes:
 
 
 @command.command(
-    "new",
-    short_help="Write a new world file.",
-    epilog=examples("jacaros world new world.yaml", "jacaros world new lab.yaml --map map.yaml"),
-)
-@click.argument("file", type=PATH)
-@option(
-    "--map MAP",
-    "Use the walls of a map: a map file of ROS's map_server (.yaml) or an image (.pgm, .png).",
-    PATH,
-    name="map_file",
-)
-@option(
-    "--resolution M",
-    "Resolution of the image, in metres per pixel (default: 0.05).",
-    click.FloatRange(0.001, 10.0),
-)
-def new_command(file: Path, map_file: Path | None, resolution: float | None) -> None:
-    """Write FILE, a commented world file to start from, with two rooms or the walls of a map.
-
-    With an image, FILE_map.yaml is written as well; the origin is the lower left corner of the image. Existing files are
-    never overwritten.
-    """  # fmt: skip
-    if resolution is not None and (map_file is None or map_file.suffix not in _IMAGES):
-        raise usage_error("--resolution needs the image of a map", "--map MAP.pgm --resolution 0.05")
-    from jacaros.robots.world.files.template import described_map, new_world, world_of_map
-
-    described, files = map_file, [file]
-    if map_file is not None and map_file.suffix in _IMAGES:
-        described = file.with_name(f"{file.stem}_map.yaml")
-        files.append(described)
-    for path in files:
-        if path.exists():
-            raise usage_error(f"file exists: `{path}`", "name another file, or delete it")
-        _check_yaml(path)
-    if map_file is not None and described is not None and described != map_file:
-        _write(described, described_map(map_file, described, resolution or _RESOLUTION))
-    _write(file, new_world(file.stem) if described is None else world_of_map(file, described))
-
-
-@command.command(
     "export",
     short_help="Write a world as a map for ROS's map_server.",
     epilog=examples("jacaros world export house house_map.yaml"),
@@ -136,7 +75,11 @@ def new_command(file: Path, map_file: Path | None, resolution: float | None) -> 
 @click.argument("file", metavar="FILE.yaml", type=PATH)
 def export_command(world: str, file: Path) -> None:
     """Write the map of WORLD to FILE.yaml and FILE.pgm, in the format of ROS's map_server. Doors are open in the map."""
-    _check_yaml(file)
+    if file.suffix not in (".yaml", ".yml"):
+        raise usage_error(
+            f"expected a file name with the suffix .yaml, found `{file}`",
+            f"name it {file.with_suffix('.yaml')}",
+        )
     image = file.with_suffix(".pgm")
     check_output(file, "map")
     check_output(image, "map image")
@@ -175,14 +118,6 @@ def _draw(world: WorldDescription) -> None:
     view.frame(0.0, views_of(World(world)))
     console.print(view.map())
     click.echo(_summary(world))
-
-
-def _check_yaml(path: Path) -> None:
-    if path.suffix not in (".yaml", ".yml"):
-        raise usage_error(
-            f"expected a file name with the suffix .yaml, found `{path}`",
-            f"name it {path.with_suffix('.yaml')}",
-        )
 
 
 def _write(path: Path, content: str | bytes) -> None:
