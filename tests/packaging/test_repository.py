@@ -37,7 +37,6 @@ FOREIGN = tuple(
 HOSTS = {
     "127.0.0.1",
     "localhost",
-    "docs.oasis-open.org",  # the format SARIF
     "github.com",  # the repository itself, see REPOSITORY
     "json-schema.org",  # the name of its dialect
     "json.schemastore.org",  # the name of its schema

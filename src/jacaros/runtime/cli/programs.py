@@ -10,11 +10,10 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from tempfile import NamedTemporaryFile
 from typing import Any
-from urllib.parse import quote
 
 import click
 
-from jacaros.agents.language.diagnostics import LEVELS, AslError, Diagnostic, Severity, Span, bounded
+from jacaros.agents.language.diagnostics import LEVELS, AslError, Diagnostic, Severity, bounded
 from jacaros.agents.language.formatting import format_program
 from jacaros.agents.mind.actions.internal_action import STANDARD
 from jacaros.runtime.cli.options import PATH, imports_option, option
@@ -25,10 +24,6 @@ from jacaros.runtime.files.texts import is_file, printable, suggestion
 from jacaros.runtime.mas.agents.programs import text_of
 from jacaros.runtime.mas.checks.files import Findings, check_files, files_below
 from jacaros.runtime.output import beneath
-from jacaros.version import VERSION
-
-Object = dict[str, Any]
-SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
 _KINDS = (".asl", ".mas2j", ".jcm", ".py", ".yaml", ".yml")
 _COLOURS: dict[Severity, str] = {"error": "red", "warning": "yellow", "note": "cyan"}
@@ -41,14 +36,13 @@ _STANDARD_INPUT = Path("-")
         "jacaros check robot.asl",
         "jacaros check . --strict",
         "jacaros check robot.asl --mapping robot.yaml",
-        "jacaros check . --format sarif > problems.sarif",
     ),
 )
 @click.argument("files", metavar="FILE...", type=PATH, nargs=-1, required=True)
 @option(
     "--format",
-    "Output format: text, json, or sarif (SARIF 2.1.0, for editors and code hosts).",
-    click.Choice(["text", "json", "sarif"]),
+    "Output format.",
+    click.Choice(["text", "json"]),
     name="style",
     default="text",
 )
@@ -93,7 +87,7 @@ def check(
     if style == "text":
         report(findings)
     else:
-        click.echo((as_json if style == "json" else as_sarif)(findings))
+        click.echo(as_json(findings))
     counts = Counter(each.severity for each in findings.diagnostics)
     return 1 if counts["error"] or (strict and counts["warning"]) else 0
 
@@ -138,20 +132,14 @@ def _summary(diagnostics: Sequence[Diagnostic], files: int) -> str:
     return f"{', '.join(found) or 'nothing wrong'} in {counted(files, 'file')}"
 
 
-# Findings as JSON, and as SARIF 2.1.0: https://docs.oasis-open.org/sarif/sarif/v2.1.0/
-
-
 def as_json(findings: Findings) -> str:
     """Return the findings as one JSON object; lines and columns count from 1, and the end column is exclusive."""
     found = [_plain(diagnostic) for diagnostic in findings.diagnostics]
-    return _json({"version": 1, "files": len(findings.files), "diagnostics": found})
-
-
-def _json(document: Object) -> str:
+    document = {"version": 1, "files": len(findings.files), "diagnostics": found}
     return json.dumps(document, indent=2, ensure_ascii=False)
 
 
-def _plain(diagnostic: Diagnostic) -> Object:
+def _plain(diagnostic: Diagnostic) -> dict[str, Any]:
     span = diagnostic.span
     return {
         "file": None if span is None else span.file.name,
@@ -162,50 +150,6 @@ def _plain(diagnostic: Diagnostic) -> Object:
         "help": None if diagnostic.help is None else printable(diagnostic.help),
         "opened": None if diagnostic.opened is None else [diagnostic.opened.line, diagnostic.opened.column],
     }
-
-
-def as_sarif(findings: Findings) -> str:
-    """Return the findings as a SARIF log with one run."""
-    codes = sorted({diagnostic.code for diagnostic in findings.diagnostics})
-    rules = [
-        {
-            "id": code,
-            "shortDescription": {"text": code.replace("-", " ")},
-            "defaultConfiguration": {"level": LEVELS[code]},
-        }
-        for code in codes
-    ]
-    results = [_result(diagnostic, codes) for diagnostic in findings.diagnostics]
-    tool = {"driver": {"name": "jacaros", "version": VERSION, "rules": rules}}
-    run = {"tool": tool, "columnKind": "unicodeCodePoints", "results": results}
-    return _json({"$schema": SCHEMA, "version": "2.1.0", "runs": [run]})
-
-
-def _result(diagnostic: Diagnostic, codes: list[str]) -> Object:
-    text = diagnostic.message if diagnostic.help is None else f"{diagnostic.message}. {diagnostic.help}"
-    result: Object = {
-        "ruleId": diagnostic.code,
-        "ruleIndex": codes.index(diagnostic.code),
-        "level": diagnostic.severity,
-        "message": {"text": printable(text)},
-    }
-    if diagnostic.span is not None:
-        result["locations"] = [_location(diagnostic.span)]
-    if diagnostic.opened is not None:
-        result["relatedLocations"] = [{**_location(diagnostic.opened), "message": {"text": "opened here"}}]
-    return result
-
-
-def _location(span: Span) -> Object:
-    path = Path(span.file.name)
-    uri = path.as_uri() if path.is_absolute() else quote(path.as_posix())
-    region = {
-        "startLine": span.line,
-        "startColumn": span.column,
-        "endLine": span.end_line,
-        "endColumn": span.end_column,
-    }
-    return {"physicalLocation": {"artifactLocation": {"uri": uri}, "region": region}}
 
 
 # Formatting.

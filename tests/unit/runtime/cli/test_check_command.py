@@ -2,7 +2,6 @@
 
 import json
 from pathlib import Path
-from typing import Any
 
 import pytest
 from command_lab import Outcome
@@ -128,54 +127,10 @@ def test_wrong_usage(folder: Path, outcome: Outcome, arguments: list[str], told:
     assert told in errors
 
 
-def test_the_sarif_report_follows_its_schema(folder: Path, outcome: Outcome) -> None:
-    (folder / "bytes.asl").write_bytes(b"\xff")
-    code, output, _ = outcome(".", "--format", "sarif")
-    log = json.loads(output)
-    assert code == 1
-    assert set(log) <= {"$schema", "version", "runs"}
-    assert log["version"] == "2.1.0"
-    (run,) = log["runs"]
-    driver = run["tool"]["driver"]
-    assert isinstance(driver["name"], str)
-    rules = [rule["id"] for rule in driver["rules"]]
-    assert len(set(rules)) == len(rules)
-    assert run["columnKind"] in ("utf16CodeUnits", "unicodeCodePoints")
-    assert len(run["results"]) == 6
-    for rule in driver["rules"]:
-        assert rule["shortDescription"]["text"]
-        assert rule["defaultConfiguration"]["level"] in ("none", "note", "warning", "error")
-    for result in run["results"]:
-        check_result(result, rules)
-
-
-def check_result(result: dict[str, Any], rules: list[str]) -> None:
-    assert result["message"]["text"]
-    assert result["level"] in ("none", "note", "warning", "error")
-    assert rules[result["ruleIndex"]] == result["ruleId"]
-    for location in result.get("locations", ()):
-        place = location["physicalLocation"]
-        assert place["artifactLocation"]["uri"].endswith(".asl")
-        region = place["region"]
-        assert all(isinstance(value, int) and value >= 1 for value in region.values())
-        assert (region["startLine"], region["startColumn"]) <= (region["endLine"], region["endColumn"])
-
-
 def test_an_unclosed_bracket_is_reported(folder: Path, outcome: Outcome) -> None:
     (folder / "open.asl").write_text("+!g <- a(1,\n  2; b.", encoding="utf-8")
     (told,) = json.loads(outcome("open.asl", "--format", "json")[1])["diagnostics"]
     assert (told["line"], told["opened"]) == (2, [1, 9])
-    (result,) = json.loads(outcome("open.asl", "--format", "sarif")[1])["runs"][0]["results"]
-    (related,) = result["relatedLocations"]
-    assert related["message"] == {"text": "opened here"}
-    assert related["physicalLocation"]["region"]["startLine"] == 1
-
-
-def test_unusual_file_names_are_quoted_in_uris(folder: Path, outcome: Outcome) -> None:
-    (folder / "a b.asl").write_text("+!g <- .", encoding="utf-8")
-    for name, uri in (("a b.asl", "a%20b.asl"), (str(folder / "a b.asl"), (folder / "a b.asl").as_uri())):
-        (result,) = json.loads(outcome(name, "--format", "sarif")[1])["runs"][0]["results"]
-        assert result["locations"][0]["physicalLocation"]["artifactLocation"]["uri"] == uri
 
 
 def test_output_is_coloured_only_on_terminals(folder: Path, outcome, monkeypatch):

@@ -125,32 +125,6 @@ def test_an_error_in_the_artifacts_is_reported(folder: Path, python: str, import
     assert "artifacts.py:1" in found.message
 
 
-def test_details_of_organisations_are_notes_of_the_checker(folder: Path) -> None:
-    project = """
-    mas p {
-        agent ann: a.asl { roles: boss in o.g, guard in o.g }
-        organisation o: o.xml {
-            group g: team {
-                players: ann cook
-                responsible-for: s
-            }
-            scheme s: work
-        }
-    }
-    """
-    found = check(folder, "!go.\n+!go <- .print(x).", project)
-    assert {each.code for each in found} == {"no-effect"}
-    roles, organisations = "roles in organisations are not supported", "organisations are not supported"
-    assert [(each.severity, each.span and each.span.line, each.message) for each in found] == [
-        ("warning", 3, f"the role `boss` in `o.g` has no effect: {roles}"),
-        ("warning", 3, f"the role `guard` in `o.g` has no effect: {roles}"),
-        ("warning", 4, f"the organisation `o` has no effect: {organisations}"),
-        ("note", 5, f"the group `g` has no effect: {organisations}"),
-        ("warning", 6, f"the role `cook` of `ann` in `g` has no effect: {roles}"),
-        ("note", 9, f"the scheme `s` has no effect: {organisations}"),
-    ]
-
-
 def test_a_comment_in_the_project_file_switches_a_warning_off(folder: Path) -> None:
     ignored = "focus: lab.c  roles: boss in o.g } // jacaros: ignore no-effect"
     assert check(folder, "!go.\n+!go <- inc.", PROJECT.replace("focus: lab.c }", ignored)) == []

@@ -1,4 +1,4 @@
-"""Streams of output and messages, and mailboxes: participants that exchange messages with agents."""
+"""Mailboxes: participants that exchange messages with agents."""
 
 import asyncio
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ from jacaros.agents.mind.state.act import SpeechAct
 from jacaros.agents.python.agent import Message
 from jacaros.agents.terms.substitution import rename
 from jacaros.agents.terms.unifier import Trail, undo, unify
-from jacaros.agents.terms.values import Term, bare, is_list, list_items
+from jacaros.agents.terms.values import Term, bare
 from jacaros.runtime.mas.embedding.running_agent import question, values_of
 from jacaros.runtime.mas.embedding.waits import RunEnded, RunWaits
 from jacaros.runtime.mas.messaging import Arrivals, Correspondent, ListNames, Send
@@ -112,30 +112,14 @@ class Mailbox(Stream[Message]):
             TimeoutError: no answer arrived in time.
             RunEnded: the run ended first.
         """
-        answers = await self._answers("askOne", receiver, literal, timeout)
-        return answers[0] if answers else None
-
-    async def ask_all(
-        self, receiver: str, literal: str, timeout: float | None = None
-    ) -> list[dict[str, Any]]:
-        """Ask an agent for all answers (``askAll``). See `ask`."""
-        return await self._answers("askAll", receiver, literal, timeout)
-
-    async def _answers(
-        self, performative: str, receiver: str, literal: str, timeout: float | None
-    ) -> list[dict[str, Any]]:
         asked, names = question(literal)
 
         def wait(answer: "asyncio.Future[SpeechAct]") -> Any:
             missing = f"agent {receiver} did not answer {literal}"
             return self._waits.wait(answer, lambda: missing, timeout, receiver)
 
-        message = await self._sender.question(receiver, performative, rename(asked), wait)
-        if message.performative == "untell":
-            return []
-        content = message.content
-        told = list(list_items(content)) if is_list(content) else [content]
-        return [values for each in told if (values := _bindings(asked, names, each)) is not None]
+        message = await self._sender.question(receiver, "askOne", rename(asked), wait)
+        return None if message.performative == "untell" else _bindings(asked, names, message.content)
 
     def receive(self, message: SpeechAct) -> None:
         """Receive a message. Called by the run."""

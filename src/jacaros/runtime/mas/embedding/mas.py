@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 
 from jacaros.agents.mind.storage import restore
 from jacaros.artifacts.kernel.faults import error_text
@@ -32,27 +32,12 @@ if TYPE_CHECKING:
     from jacaros.robots.ros.backend import Backend
     from jacaros.robots.world import World
     from jacaros.runtime.mas.debugging.debugger import Debugger
-    from jacaros.runtime.mas.embedding.mailbox import Mailbox, PythonMailboxes, Stream
+    from jacaros.runtime.mas.embedding.mailbox import Mailbox, PythonMailboxes
     from jacaros.runtime.mas.environment import RunEnvironment
 
 T = TypeVar("T")
 _PYTHON = "python"
 """Default sender of messages."""
-
-
-class PrintedLine(NamedTuple):
-    """A line of an agent's output.
-
-    Attributes:
-        agent: name of the agent.
-        text: the line, without the name.
-    """
-
-    agent: str
-    text: str
-
-    def __str__(self) -> str:
-        return f"[{self.agent}] {self.text}"
 
 
 OnPrint = Callable[[str, str], None]
@@ -480,24 +465,6 @@ class Mas:
             known = Mailbox(name, system.deliver, system.agent_names, waits)
             self._mailboxes[name] = known
         return known
-
-    def output(self, agent: str | None = None) -> "Stream[PrintedLine]":
-        """Return the output of agents from now on, as an asynchronous iterator that ends with the run.
-
-        Args:
-            agent: only the output of this agent.
-        """
-        from jacaros.runtime.mas.embedding.mailbox import Stream
-
-        _, waits = self._running
-        stream: Stream[PrintedLine] = Stream(waits, f"{agent or 'no agent'} printed nothing")
-
-        def put(printing: str, text: str) -> None:
-            if agent in (None, printing):
-                stream.put(PrintedLine(printing, text))
-
-        self._console.listen(put)
-        return stream
 
     def on_print(self, callback: OnPrint) -> Callable[[], None]:
         """Call *callback* with agent and text of all output from now on. Return a function that ends this.

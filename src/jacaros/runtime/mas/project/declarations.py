@@ -67,18 +67,15 @@ _REPLACED: Final = ("jaca.", "c4jason.", "jason.architecture.AgArch", "jason.bb.
 
 
 class Unsupported(NamedTuple):
-    """One declaration without effect. A *detail* belongs to another one that is reported."""
+    """One declaration without effect."""
 
     topic: Ignored
     what: str
     span: Span
-    detail: bool = False
 
     def diagnostic(self) -> Diagnostic:
-        """Return the message, as `jacaros check` prints it. Details are notes."""
+        """Return the message, as `jacaros check` prints it."""
         message = f"{self.what} has no effect: {self.topic.why}"
-        if self.detail:
-            return Diagnostic("note", message, self.span, None, CODE)
         return Diagnostic("warning", message, self.span, self.topic.help, CODE)
 
 
@@ -96,11 +93,10 @@ def class_without_effect(key: str, written: str) -> tuple[Ignored, str] | None:
 
 
 def condensed(found: Sequence[Unsupported]) -> list[Diagnostic]:
-    """Return one warning for each topic and file, without details, as a run prints them."""
+    """Return one warning for each topic and file, as a run prints them."""
     groups: dict[tuple[str, Ignored], list[Unsupported]] = {}
     for one in sorted(found, key=lambda one: one.span[1:]):
-        if not one.detail:
-            groups.setdefault((one.span.file.name, one.topic), []).append(one)
+        groups.setdefault((one.span.file.name, one.topic), []).append(one)
     return [
         group[0].diagnostic() if len(group) == 1 else _together(topic, group)
         for (_, topic), group in groups.items()
@@ -199,25 +195,14 @@ class WorkspacePart:
 
 
 @dataclass
-class OrganisationPart:
-    """An organisation or institution, with the agents and workspaces that it mentions."""
-
-    name: str
-    span: Span
-    is_institution: bool = False
-    agents: list[WrittenName] = field(default_factory=list)
-    workspaces: list[WrittenName] = field(default_factory=list)
-
-
-@dataclass
 class ProjectPart:
-    """One project file. ``mapped`` are the artifacts of its mapping files."""
+    """One project file. ``organisations`` are also institutions; ``mapped`` are the artifacts of its mapping files."""
 
     name: str = "mas"
     uses: list[WrittenName] = field(default_factory=list)
     agents: list[AgentPart] = field(default_factory=list)
     workspaces: list[WorkspacePart] = field(default_factory=list)
-    organisations: list[OrganisationPart] = field(default_factory=list)
+    organisations: dict[str, Ignored] = field(default_factory=dict)
     environment: str | None = None
     infrastructure: list[str] = field(default_factory=list)
     world: str | None = None

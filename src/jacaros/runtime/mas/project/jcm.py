@@ -28,7 +28,6 @@ from jacaros.runtime.mas.project.declarations import (
     ArtifactDeclaration,
     FocusPart,
     JoinPart,
-    OrganisationPart,
     WorkspacePart,
     WrittenName,
 )
@@ -408,7 +407,7 @@ class JcmReader(ProjectReader):
         self.part.workspaces.append(workspace)
         self._read_block(_WORKSPACE, workspace)
 
-    def _agents(self, part: WorkspacePart | OrganisationPart, _: ProjectToken) -> None:
+    def _agents(self, part: WorkspacePart, _: ProjectToken) -> None:
         part.agents += self.names()
 
     def _parent(self, workspace: WorkspacePart, _: ProjectToken) -> None:
@@ -455,43 +454,19 @@ class JcmReader(ProjectReader):
                 agent = self.take("the name of an agent", "word", "*")
             found.append((agent.text, namespace, self.span_of(agent)))
 
-    # ---- organisations and institutions: read and checked, but without effect
+    # ---- organisations and institutions
 
     def _organisation(self, keyword: ProjectToken) -> None:
-        """``organisation name : file { ... }``, and the same of an institution."""
+        """``organisation name : file { ... }``, and the same of an institution: without effect, so the block is skipped."""
         is_institution = keyword.text == "institution"
         what, topic = ("institution", INSTITUTIONS) if is_institution else ("organisation", ORGANISATIONS)
         name = self.lower_name(f"the name of an {what}")
-        part = OrganisationPart(name.text, self.span_of(name), is_institution)
         if self.accept(":"):
             self._file_name(f"the file of the {what}")
-        self.part.organisations.append(part)
-        self.unsupported(topic, f"the {what} `{part.name}`", part.span)
-        self._read_block(_INSTITUTION if is_institution else _ORGANISATION, part)
-
-    def _part_of_organisation(self, part: OrganisationPart, keyword: ProjectToken) -> None:
-        """``group name : type { ... }``, and the same of a scheme."""
-        what = keyword.text
-        name = self.name(f"the name of a {what}")
-        self.expect(":", f"write `{what} name : type`")
-        self.name(f"the type of the {what}")
-        self.unsupported(ORGANISATIONS, f"the {what} `{name.text}`", self.span_of(name), detail=True)
-        # The agents that it mentions are those of the organisation.
-        self._read_block(_GROUP if what == "group" else _SCHEME, replace(part, name=name.text))
-
-    def _players(self, group: OrganisationPart, _: ProjectToken) -> None:
-        """``agent role``, any number of times."""
-        for agent in self._items("word", "*"):
-            if agent.kind == "word":
-                group.agents.append((agent.text, self.span_of(agent)))
-            role = self.token
-            if role.kind != "word" or role.first or self._at_end():
-                message = f"expected the role of `{agent.text}`, found {role}"
-                self.fail(message, help="write `players: agent role, agent role`")
-            self.advance()
-            span = self.span_of(agent).to(self.span_of(role))
-            self.unsupported(ROLES, f"the role `{role.text}` of `{agent.text}` in `{group.name}`", span)
-            self._node_of(f"the role `{role.text}`")
+        self.part.organisations[name.text] = topic
+        self.unsupported(topic, f"the {what} `{name.text}`", self.span_of(name))
+        if self.token.kind == "{":
+            self.skip_block()
 
     readers: ClassVar = {
         "asl-path": lambda self, key: self.part.source_paths.extend(text for text, _ in self.some_names(key)),
@@ -548,26 +523,6 @@ _WORKSPACE: Final = Block(
     {"artifact": _R._artifact, "debug": _R._inspector},
 )
 _OF_ARTIFACT: Final = Block("an artifact", {"focused-by": _R._focused_by})
-_PART, _DEBUG = _R._part_of_organisation, {"debug": lambda *_: None}
-_ORGANISATION: Final = Block(
-    "an organisation",
-    {"agents": _R._agents, "situated": _R.pieces, "debug": _R.pieces},
-    {"group": _PART, "scheme": _PART, **_DEBUG},
-    _R.pieces,
-)
-_INSTITUTION: Final = Block(
-    "an institution",
-    {"workspaces": lambda self, part, _: part.workspaces.extend(self.names()), "debug": _R.pieces},
-    _DEBUG,
-    _R.pieces,
-)
-_GROUP: Final = Block(
-    "a group",
-    {"players": _R._players, "responsible-for": _R.pieces, "owner": _R._agents, "debug": _R.pieces},
-    {"group": _PART, **_DEBUG},
-    _R.pieces,
-)
-_SCHEME: Final = Block("a scheme", {"owner": _R._agents, "debug": _R.pieces}, _DEBUG, _R.pieces)
 
 
 def _unquoted(text: str) -> str:

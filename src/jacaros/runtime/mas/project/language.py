@@ -99,9 +99,9 @@ class ProjectReader(ProjectCursor):
         while self.token.kind != "end" and not self.at_next_section():
             self.advance()
 
-    def unsupported(self, topic: Ignored, what: str, span: Span, detail: bool = False) -> None:
+    def unsupported(self, topic: Ignored, what: str, span: Span) -> None:
         """Record a declaration that has no effect."""
-        self.part.unsupported.append(Unsupported(topic, what, span, detail))
+        self.part.unsupported.append(Unsupported(topic, what, span))
 
     def class_of_agent(self, key: str, name: str, span: Span) -> None:
         """Record a class of an agent that has no effect."""

@@ -139,7 +139,7 @@ def _complete(path: Path, part: ProjectPart) -> None:
 def _import(part: ProjectPart, used: ProjectPart) -> None:
     part.agents[:0] = used.agents
     part.workspaces[:0] = used.workspaces
-    part.organisations[:0] = used.organisations
+    part.organisations |= used.organisations
     part.unsupported[:0] = used.unsupported
     part.mapped[:0] = used.mapped
     part.folders = tuple(dict.fromkeys([*part.folders, *used.folders]))

@@ -12,8 +12,6 @@ from jacaros.runtime.mas.agents.options import check_option
 from jacaros.runtime.mas.agents.programs import SourcePath
 from jacaros.runtime.mas.deployment import AgentSpec, FocusSpec, WorkspaceSpec
 from jacaros.runtime.mas.project.declarations import (
-    INSTITUTIONS,
-    ORGANISATIONS,
     AgentPart,
     FocusPart,
     JoinPart,
@@ -103,11 +101,6 @@ class Resolver:
         known = {name for agent in self._part.agents for name in (agent.name, *agent.instance_names())}
         for workspace in self._part.workspaces:
             self._check(workspace, known)
-        for organisation in self._part.organisations:
-            for name, span in organisation.agents:
-                self._check_agent(name, span, known, is_error=False)
-            for name, span in organisation.workspaces:
-                self._lookup(name, span)
         ordered: dict[str, None] = {}
         for path in self._paths:
             parts = path.split("/")
@@ -138,10 +131,9 @@ class Resolver:
                 message = f"`{name}` is a standard artifact of every workspace"
                 self.error(message, span, "choose another name")
 
-    def _check_agent(self, name: str, span: Span, known: set[str], is_error: bool = True) -> None:
+    def _check_agent(self, name: str, span: Span, known: set[str]) -> None:
         if name != "*" and name not in known:
-            report = self.error if is_error else self.warn
-            report(f"unknown agent `{name}`", span, suggestion(name, sorted(known)) or None)
+            self.error(f"unknown agent `{name}`", span, suggestion(name, sorted(known)) or None)
 
     # what names lead to
 
@@ -223,11 +215,9 @@ class Resolver:
 
     def _is_of_organisation(self, name: str, span: Span) -> bool:
         """Return whether *name* is an organisation, which is also a workspace in JaCaMo. Record it as unsupported."""
-        named = [each for each in self._part.organisations if each.name == name]
-        if self._is_here(name) or not named:
+        topic = self._part.organisations.get(name)
+        if self._is_here(name) or topic is None:
             return False
-        is_institution = any(each.is_institution for each in named)
-        topic = INSTITUTIONS if is_institution else ORGANISATIONS
         found = Unsupported(topic, f"the workspace of `{name}`", span)
         if found not in self._part.unsupported:
             self._part.unsupported.append(found)

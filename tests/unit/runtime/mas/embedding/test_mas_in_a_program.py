@@ -97,15 +97,6 @@ async def test_focus_takes_names_paths_and_specs(mas: Mas) -> None:
     assert "e" not in [agent.name for agent in mas.agents]
 
 
-async def test_output_is_a_stream(mas: Mas) -> None:
-    everything, bobs = mas.output(), mas.output("bob")
-    mas.add_agent("bob", "!go. +!go <- .print(a); .wait(1000); .print(b); .wait(1000); .stopMAS.")
-    mas.add_agent("ann", "!go. +!go <- .wait(500); .print(c).")
-    assert str(await bobs.get(timeout=1)) == "[bob] a"
-    assert [line.text async for line in bobs] == ["b"]
-    assert [tuple(line) for line in everything.take()] == [("bob", "a"), ("ann", "c"), ("bob", "b")]
-
-
 async def test_lines_go_to_standard_output_by_default(capsys: pytest.CaptureFixture[str]) -> None:
     async with Mas() as mas:
         mas.add_agent("bob", "!go. +!go <- .print(hi); .log(warning, careful).")

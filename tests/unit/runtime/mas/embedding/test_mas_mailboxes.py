@@ -23,8 +23,6 @@ async def test_python_code_has_mailboxes(mas: Mas, lines: list[str]) -> None:
     assert (first.sender, first.performative, first.content.functor) == ("bob", "tell", "done")
     assert second.content.functor == "bye"
     assert await me.ask("bob", "color(ball, C)") == {"C": Atom("blue")}
-    answers = [{"X": Atom("box"), "C": Atom("red")}, {"X": Atom("ball"), "C": Atom("blue")}]
-    assert await me.ask_all("bob", "color(X, C)") == answers
     assert await me.ask("bob", "sum(1, 2, X)") == {"X": 3}
     assert await me.ask("bob", "color(cup, C)") is None
     assert len(me) == 0

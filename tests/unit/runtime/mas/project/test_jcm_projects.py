@@ -182,11 +182,6 @@ def test_agents_may_have_names_of_sections_and_keys(load: Load) -> None:
         ("workspace w { parent: v } workspace v { parent: w }", "workspace `w` is its own ancestor"),
         ("workspace w workspace w", "duplicate workspace `w`"),
         ("workspace a/w workspace b/w agent bob { join: w }", "ambiguous workspace `w`"),
-        ("organisation o : o.xml { group g }", "expected `:`, found `}`"),
-        ("organisation o : o.xml { group g : t { players: bob } }", "expected the role of `bob`, found `}`"),
-        ("organisation o : o.xml { scheme s : }", "expected the type of the scheme, found `}`"),
-        ("organisation o : o.xml { grup g : t }", "missing `:` after `grup`"),
-        ("institution i : i.sai { workspaces: v }", "unknown workspace `v`"),
         ("uses packages: x", "expected `package`, found `packages`"),
         ("node n @", "expected the address of the node, found `}`"),
         ("platform:", "expected a platform after `platform:`, found `}`"),
@@ -203,18 +198,13 @@ def test_after_an_error_the_rest_of_the_block_is_read(errors: Errors) -> None:
         mas m { agent bob { roles: cook at home
             join: nowhere
             instances: Three }
-          organisation o : o.xml { group g : t { players: bob
-              owner bob
-              group h }
-            scheme s
-          }
           workspace w { artifact a = A
             artifact b : B(1, ]
             parent: nowhere }
           agent alice { join: w }
         }
         """)
-    assert [line for line, _ in found] == [1, 2, 3, 5, 6, 8, 9, 10, 11]
+    assert [line for line, _ in found] == [1, 2, 3, 4, 5, 6]
 
 
 def test_a_run_warns_once_for_each_kind_and_the_checker_reports_everything(write: Write) -> None:
@@ -228,17 +218,8 @@ def test_a_run_warns_once_for_each_kind_and_the_checker_reports_everything(write
           workspace w { host: n2 debug }
           institution i : src/org/i.sai { workspaces: w debug k: 3 }
           organisation o : src/org/o.xml {
-            group all : t {
-              responsible-for : s1, s2
-              debug
-              players: alice guest,    // comments
-                       bob   cook      // between them
-              group inner : u { owner: bob debug: all }
-            }
+            group all : t { players: alice guest, bob cook  group inner : u { owner: bob debug: all } }
             scheme s1 : work { debug owner: bob k: "v" }
-            scheme s2 : work
-            agents: bob, alice
-            situated: i
           }
           class-path: bin/classes, ../lib/x.jar   org-path: src/org
           platform: jade("-gui -port 1") local(pool,4)
@@ -249,16 +230,13 @@ def test_a_run_warns_once_for_each_kind_and_the_checker_reports_everything(write
         }
         """)
     reading = read_project(path)
-    assert {each.severity for each in reading.diagnostics} == {"warning", "note"}
-    assert {each.code for each in reading.diagnostics} == {"no-effect"}
-    assert [each.message for each in reading.diagnostics if each.severity == "note"] == [
-        f"the {what} has no effect: organisations are not supported"
-        for what in ("group `all`", "group `inner`", "scheme `s1`", "scheme `s2`")
-    ]
+    assert {(each.severity, each.code) for each in reading.diagnostics} == {("warning", "no-effect")}
+    assert len(reading.diagnostics) == 18
     told = [each.message for each in load_deployment(path).ignored]
     assert len(told) == 8, told
-    assert told[0] == "5 roles have no effect: roles in organisations are not supported (lines 2, 6, 13, 14)"
-    nodes = "5 nodes and hosts have no effect: all agents run in one process (lines 2, 4, 7, 26, 27)"
+    roles = "the role `cook` in `o.kitchen`, the role `waiter` in `o.hall` and the role `guest` in `o.hall`"
+    assert told[0] == f"{roles} have no effect: roles in organisations are not supported (lines 2, 6)"
+    nodes = "5 nodes and hosts have no effect: all agents run in one process (lines 2, 4, 7, 17, 18)"
     assert nodes in told
     assert "the platform `jade` has no effect: all agents run in one process" in told
     assert load_deployment(path).agents[0].focus == ()
