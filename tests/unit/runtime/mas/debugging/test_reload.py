@@ -82,7 +82,7 @@ async def test_plans_and_rules_are_replaced_and_beliefs_and_intentions_kept(
     assert lines == ["old", "oldend", "new"]
     await bob.achieve("more")
     third = mas.add_agent("third", file)
-    await mas.sleep(0.1)
+    await mas.sleep(1.0)
     assert "new" in lines[4:]
     assert third.mind.program.plans == bob.mind.program.plans
 
