@@ -35,7 +35,7 @@ MAPPING = f'artifacts: {{"{JSON_EVIL}": {{properties: {{"{JSON_EVIL}": {{topic: 
 
 RUNS: dict[str, list[list[str]]] = {
     "run": [["run", "a.asl", "--clock", "fast", "--world", "none", "--for", "2"], ["run", f"b{EVIL}.asl"]],
-    "test": [["test", "tests.asl"], ["test", "tests.asl", "--color", "always"]],
+    "test": [["test", "tests.asl"], ["test", "-v", "tests.asl"]],
     "check": [["check", "a.asl"], ["check", "w.yaml"], ["check", "m.yaml"], ["check", EVIL]],
     "describe": [["describe", "a.asl"], ["describe", "a.asl", "--json"], ["describe", "m.yaml"]],
     "fmt": [["fmt", "--check", "a.asl"], ["fmt", "broken.asl"]],
@@ -46,7 +46,7 @@ RUNS: dict[str, list[list[str]]] = {
     ],
     "why": [["why", "r.jsonl", "waiting"], ["why", "r.jsonl", EVIL], ["why", "r.jsonl", "waiting", "--json"]],
     "replay": [["replay", "r.jsonl", "--against", "other.asl"], ["replay", "r.jsonl", "--against", EVIL]],
-    "world": [["world", "check", "w.yaml"], ["world", "show", "w.yaml"], ["world", "list", EVIL]],
+    "world": [["world", "show", "w.yaml"], ["world", "list", EVIL]],
     "sim": [["sim", "w.yaml"], ["sim", EVIL]],
     "ros": [["ros", "list", "--world", "w.yaml"], ["ros", "show", EVIL], ["ros", "check", "m.yaml"]],
     "guard": [["guard", EVIL]],
@@ -108,10 +108,8 @@ def test_every_command_is_tried() -> None:
 def test_no_control_character_reaches_the_terminal(outputs: dict[str, str], command: str) -> None:
     for arguments in RUNS[command]:
         output = outputs[json.dumps(arguments)]
-        styles = "\x1b\\[[0-9;]*m" if "always" in arguments else "$^"
         assert output, arguments
-        assert OBEYED.findall(re.sub(styles, "", output)) == [], arguments
-        assert "\x1b[2J" not in output
+        assert OBEYED.findall(output) == [], arguments
 
 
 def test_what_an_agent_prints_is_shown_escaped(outputs: dict[str, str]) -> None:

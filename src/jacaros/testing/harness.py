@@ -180,11 +180,10 @@ class HarnessPort:
         name: str,
         actions: Mapping[str, Action],
         others: Collection[str] | None,
-        seed: int,
         programs: Programs,
         file: Path,
     ) -> None:
-        self.random = Random(seed)
+        self.random = Random(0)
         self.clock = VirtualClock()
         self.prints: list[str] = []
         self.logs: list[str] = []
@@ -329,7 +328,6 @@ class AgentHarness(OpenMind):
             until the test ends them; see `act`.
         others: names of agents that accept messages; None for any name.
         folders: folders to search for included files, in addition to that of the program.
-        seed: seed of the agent's random numbers.
 
     Attributes:
         prints: lines that the agent printed.
@@ -352,7 +350,6 @@ class AgentHarness(OpenMind):
         actions: Mapping[str, Action] | None = None,
         others: Collection[str] | None = None,
         folders: Sequence[Path] = (),
-        seed: int = 0,
     ) -> None:
         self.name = name
         self._asked = 0
@@ -362,7 +359,7 @@ class AgentHarness(OpenMind):
         programs = Programs(
             (file.parent, *folders), lambda message: self.logs.append(f"warning: {message}"), code
         )
-        port = self._port = HarnessPort(name, dict(actions or {}), others, seed, programs, file)
+        port = self._port = HarnessPort(name, dict(actions or {}), others, programs, file)
         self.prints, self.logs, self.files = port.prints, port.logs, port.files
         self.acts, self.sent = port.acts, port.sent
         tree, _ = load_program(str(file), written, programs.path.include, code.functions, code.actions)

@@ -8,11 +8,9 @@ from jacaros.look.metrics.counting import MEASURES, CountedFile, Counts, Group, 
 from jacaros.look.metrics.programs import MetricsError, measure
 from jacaros.look.metrics.tables import (
     Table,
-    as_csv,
     as_markdown,
     as_text,
     file_table,
-    group_table,
     measure_table,
 )
 
@@ -25,13 +23,11 @@ __all__ = [
     "ProgramMetrics",
     "Series",
     "Table",
-    "as_csv",
     "as_markdown",
     "as_text",
     "bar_chart",
     "counts_of",
     "file_table",
-    "group_table",
     "measure",
     "measure_chart",
     "measure_table",

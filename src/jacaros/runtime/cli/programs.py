@@ -2,7 +2,6 @@
 
 import difflib
 import json
-import os
 import shutil
 import sys
 from collections import Counter
@@ -17,7 +16,15 @@ from jacaros.agents.language.diagnostics import LEVELS, AslError, Diagnostic, Se
 from jacaros.agents.language.formatting import format_program
 from jacaros.agents.mind.actions.internal_action import STANDARD
 from jacaros.runtime.cli.options import PATH, imports_option, option
-from jacaros.runtime.cli.usage import counted, examples, existing, listed, no_programs, usage_error
+from jacaros.runtime.cli.usage import (
+    counted,
+    examples,
+    existing,
+    has_colours,
+    listed,
+    no_programs,
+    usage_error,
+)
 from jacaros.runtime.errors import InternalError
 from jacaros.runtime.files import texts
 from jacaros.runtime.files.texts import is_file, printable, suggestion
@@ -113,11 +120,6 @@ def report(findings: Findings) -> None:
     click.echo(_summary(findings.diagnostics, len(findings.files)), err=True)
 
 
-def has_colours() -> bool:
-    """Return whether to colour the output: it is a terminal, and NO_COLOR is not set."""
-    return sys.stdout.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
-
-
 def _coloured(diagnostic: Diagnostic) -> str:
     head, newline, rest = diagnostic.render(with_code=True).partition("\n")
     where = diagnostic.place()
@@ -163,8 +165,7 @@ def _plain(diagnostic: Diagnostic) -> dict[str, Any]:
 @option(
     "--check", "Write nothing; print the changes, and exit with status 1 if there are any.", name="only_check"
 )
-@option("--diff", "Write nothing; print the changes.", name="only_show")
-def fmt(files: tuple[Path, ...], only_check: bool, only_show: bool) -> int:
+def fmt(files: tuple[Path, ...], only_check: bool) -> int:
     """Format each FILE in one style: an agent program (.asl), or all programs in a folder. `-` formats the standard
     input to the standard output.
 
@@ -191,7 +192,7 @@ def fmt(files: tuple[Path, ...], only_check: bool, only_show: bool) -> int:
             code = 1
             continue
         changed += before != after
-        if only_check or only_show:
+        if only_check:
             click.echo("".join(_difference(path, before, after)), nl=False)
         elif path == _STANDARD_INPUT:
             click.echo(after.encode(), nl=False)
@@ -202,7 +203,7 @@ def fmt(files: tuple[Path, ...], only_check: bool, only_show: bool) -> int:
                 click.echo(f"error: cannot write `{path}`: {fault.strerror}", err=True)
                 code = 1
     if _STANDARD_INPUT not in files:
-        what = "would change" if only_check or only_show else "changed"
+        what = "would change" if only_check else "changed"
         click.echo(f"{changed} of {counted(len(programs), 'file')} {what}", err=True)
     return 1 if only_check and changed else code
 

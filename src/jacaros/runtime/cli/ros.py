@@ -11,7 +11,6 @@ from jacaros.robots.ros.middleware import MIDDLEWARES
 from jacaros.runtime.cli.graph_options import address_options, ros_option, world_option
 from jacaros.runtime.cli.options import settled, with_options
 from jacaros.runtime.cli.usage import examples, usage_error
-from jacaros.runtime.files.texts import shown_from
 from jacaros.runtime.mas.options import RunOptions
 
 if TYPE_CHECKING:
@@ -34,13 +33,6 @@ _asking = with_options(
     ),
 )
 """Adds the options that select the graph."""
-_INTERFACES = click.option(
-    "--interfaces",
-    type=click.Path(exists=True, file_okay=False, path_type=Path),
-    multiple=True,
-    metavar="FOLDER",
-    help="Folder with interface definitions (PACKAGE/msg/NAME.msg and so on); not for ROS 2. Repeatable.",
-)
 
 
 @click.group("ros", short_help="Inspect a live ROS graph, and write mapping files for it.")
@@ -90,7 +82,6 @@ def list_command(rates: bool, as_json: bool, **graph: Any) -> None:
 )
 @click.argument("name")
 @_asking
-@_INTERFACES
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def show_command(name: str, as_json: bool, **graph: Any) -> None:
     """Show NAME: a topic, service, action or node of the graph, or a type such as nav_msgs/msg/Odometry.
@@ -133,10 +124,7 @@ def show_command(name: str, as_json: bool, **graph: Any) -> None:
 )
 @click.option("--force", is_flag=True, help="Overwrite an existing file.")
 @_asking
-@_INTERFACES
-def map_command(
-    names: tuple[str, ...], output: Path | None, force: bool, interfaces: tuple[Path, ...], **graph: Any
-) -> None:
+def map_command(names: tuple[str, ...], output: Path | None, force: bool, **graph: Any) -> None:
     """Write a mapping file for the named topics, services and actions; without names, for the usual ones of a robot.
 
     The usual ones are odometry, laser scan, battery, bumpers, map, velocity, the actions to drive and dock, and services
@@ -150,7 +138,6 @@ def map_command(
     if output is not None and output.exists() and not force:
         raise usage_error(f"file exists: `{output}`", "--force overwrites it")
     file = output if output is not None else Path("robot.yaml")
-    folders = [shown_from(file.parent, folder) for folder in interfaces]
 
     async def look(joined: "Joined") -> str:
         if names:
@@ -166,9 +153,9 @@ def map_command(
                     "the graph has no odometry, scan, cmd_vel, battery or action to drive\n"
                     "  = help: name topics, services or actions that `jacaros ros list` shows"
                 )
-        return first_mapping.mapping_for(joined, things, frames, file.name, _written(**graph), left, folders)
+        return first_mapping.mapping_for(joined, things, frames, file.name, _written(**graph), left)
 
-    text = _in_graph(look, interfaces=interfaces, **graph)
+    text = _in_graph(look, **graph)
     if output is None:
         click.echo(text, nl=False)
         return
@@ -268,7 +255,6 @@ async def _check_base(joined: "Joined", mapping: "MappingFile | None", namespace
 def _in_graph(
     look: Callable[[Any], Awaitable[T]],
     timeout: float,
-    interfaces: tuple[Path, ...] = (),
     **graph: Any,
 ) -> T:
     """Join the graph that the options select, and run *look* in it."""
@@ -282,8 +268,6 @@ def _in_graph(
 
     async def main() -> T:
         async with joined(options, clock, timeout) as there:
-            for folder in interfaces:
-                there.backend.add_interfaces(folder)
             return await look(there)
 
     return run(main, clock)

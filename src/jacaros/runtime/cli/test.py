@@ -1,7 +1,5 @@
 """``jacaros test FILE|FOLDER ...``."""
 
-import os
-import re
 import sys
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
@@ -12,7 +10,7 @@ import click
 
 from jacaros.runtime.cli.graph_options import noise_option
 from jacaros.runtime.cli.options import PATH, option
-from jacaros.runtime.cli.usage import counted, examples, listed, usage_error
+from jacaros.runtime.cli.usage import counted, examples, has_colours, listed, usage_error
 from jacaros.runtime.files.texts import visible
 from jacaros.runtime.output import beneath
 
@@ -20,7 +18,6 @@ if TYPE_CHECKING:
     from jacaros.testing.suites import Outcome, Suite
     from jacaros.testing.trial import TrialOptions
 
-_STYLED = re.compile(r"(\x1b\[.*?\x1b\[0m)", re.DOTALL)
 _COLOURS = {"passed": "green", "failed": "red", "place": "cyan"}
 
 
@@ -40,13 +37,6 @@ _COLOURS = {"passed": "green", "failed": "red", "place": "cyan"}
     click.FloatRange(0.0, min_open=True),
     default=60.0,
 )
-@option("--cycles N", "Limit on the reasoning cycles of each test.", click.IntRange(1), default=1_000_000)
-@option(
-    "--patience S",
-    "Limit on the real time of each test, in seconds; 0 for no limit.",
-    click.FloatRange(0.0),
-    default=300.0,
-)
 @option(
     "--clock",
     "Clock to run on: real, or fast (virtual time).",
@@ -64,19 +54,12 @@ _COLOURS = {"passed": "green", "failed": "red", "place": "cyan"}
     "Mapping file for all tests; the label [test, mapping(FILE)] adds one for a single test. Repeatable.",
     name="mappings",
 )
-@option(
-    "--color",
-    "Whether to colour the report; auto: on a terminal, unless NO_COLOR is set.",
-    click.Choice(["auto", "always", "never"]),
-    default="auto",
-)
 @option("-v --verbose", "Also show the time of each test and the output of passed tests.")
 def command(
     paths: tuple[Path, ...],
     pattern: str | None,
     first: bool,
     clock: str,
-    color: str,
     verbose: bool,
     **given: Any,
 ) -> int:
@@ -90,7 +73,7 @@ def command(
     from jacaros.testing.trial import TrialOptions
 
     suites = _chosen(collect(paths or (Path(),)), paths, pattern)
-    report = _Report(color, verbose)
+    report = _Report(verbose)
     return 0 if report.run(suites, TrialOptions(fast=clock == "fast", **given), first) else 1
 
 
@@ -98,15 +81,12 @@ class _Report:
     """Runs suites, prints each test as it ends, and then the failures.
 
     Args:
-        color: ``auto``, ``always`` or ``never``.
         verbose: also print the time of each test and the output of passed tests.
     """
 
-    def __init__(self, color: str, verbose: bool) -> None:
-        on_terminal = sys.stdout.isatty() and not os.environ.get("NO_COLOR")
-        self._coloured = color == "always" or (color == "auto" and on_terminal)
+    def __init__(self, verbose: bool) -> None:
+        self._coloured = has_colours()
         self._verbose = verbose
-        self._painted: set[str] = set()
 
     def run(self, suites: "Sequence[Suite]", options: "TrialOptions", first: bool) -> bool:
         """Run all tests, or up to the *first* failed one; return whether all passed."""
@@ -118,17 +98,18 @@ class _Report:
         for suite in suites:
             for warning in suite.warnings:
                 click.echo(warning, err=True)
-            self._echo(self._paint(str(suite.path), "place"))
+            _echo(self._paint(str(suite.path), "place"))
             if suite.error is not None:
                 errors += 1
-                self._echo(f"  {self._paint('ERROR ', 'failed')}  cannot run the file")
-                failures += ("", self._paint(f"{suite.path}: cannot run the file", "failed"), suite.error)
+                _echo(f"  {self._paint('ERROR ', 'failed')}  cannot run the file")
+                failures += ("", self._paint(f"{suite.path}: cannot run the file", "failed"))
+                failures.append(visible(suite.error))
             for outcome in run_suite(suite, options):
                 outcomes.append(outcome)
                 self._show(outcome)
                 if not outcome.passed:
                     failures += ("", self._paint(f"{suite.path}::{outcome.test.name}", "failed"))
-                    failures += (f"  {line}" for line in outcome.lines())
+                    failures += (f"  {visible(line)}" for line in outcome.lines())
                     if first:
                         break
             if first and failures:
@@ -142,30 +123,30 @@ class _Report:
         assertions = sum(outcome.assertions for outcome in outcomes)
         summary = f"{', '.join(counts)}; {assertions} assertions, seed {options.seed}"
         for line in (*failures, "", self._paint(summary, "failed" if failures else "passed")):
-            self._echo(line)
+            _echo(line)
         return not failures
 
     def _show(self, outcome: "Outcome") -> None:
         verdict = self._paint("ok    ", "passed") if outcome.passed else self._paint("FAILED", "failed")
         took = self._paint(f"  {outcome.seconds:.2f} s", "quiet") if self._verbose else ""
-        self._echo(f"  {verdict}  {outcome.test.name}{took}")
+        _echo(f"  {verdict}  {visible(outcome.test.name)}{took}")
         if self._verbose and outcome.passed:
             for text in outcome.output:
-                self._echo(self._paint(f"          {text}", "quiet"))
+                _echo(self._paint(f"          {text}", "quiet"))
 
     def _paint(self, text: str, kind: str) -> str:
+        """Return text for the terminal: escaped, and coloured if it understands that."""
+        text = visible(text)
         if not self._coloured:
             return text
-        painted = click.style(
-            visible(text), fg=_COLOURS.get(kind), bold=kind == "failed" or None, dim=kind == "quiet" or None
+        return click.style(
+            text, fg=_COLOURS.get(kind), bold=kind == "failed" or None, dim=kind == "quiet" or None
         )
-        self._painted.add(painted)
-        return painted
 
-    def _echo(self, line: str) -> None:
-        """Print a line; control characters that are not painted here are escaped."""
-        parts = (part if part in self._painted else visible(part) for part in _STYLED.split(line))
-        click.echo("".join(parts), beneath(sys.stdout), color=True)
+
+def _echo(line: str) -> None:
+    """Print a line of escaped text, which may be coloured."""
+    click.echo(line, beneath(sys.stdout), color=True)
 
 
 def _chosen(found: "list[Suite]", paths: Sequence[Path], pattern: str | None) -> "list[Suite]":

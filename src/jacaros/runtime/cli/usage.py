@@ -1,5 +1,7 @@
 """Errors of wrong usage, files named on the command line, and the examples at the end of help texts."""
 
+import os
+import sys
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -65,6 +67,11 @@ def listed(names: Iterable[object]) -> str:
 def counted(number: int, what: str, plural: str = "") -> str:
     """Return a number of things as text: ``1 file``, ``2 files``."""
     return f"{number} {what if number == 1 else plural or f'{what}s'}"
+
+
+def has_colours() -> bool:
+    """Return whether to colour the output: it is a terminal, and NO_COLOR is not set."""
+    return sys.stdout.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
 
 
 def no_programs(named: Iterable[Path]) -> UsageError:

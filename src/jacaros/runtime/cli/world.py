@@ -13,7 +13,7 @@ from jacaros.runtime.cli.usage import counted, examples, usage_error
 from jacaros.runtime.output import beneath
 
 _WIDTH = 640
-"""Default width of a picture, in pixels."""
+"""Width of a picture, in pixels."""
 _ROWS = 48
 """Height of a picture in characters when the output is not a terminal, in lines."""
 
@@ -33,8 +33,7 @@ def command() -> None:
 )
 @click.argument("world")
 @option("--output FILE", "Write a picture to FILE.svg or FILE.png.", PATH)
-@option("--width", "Width of the picture, in pixels.", click.IntRange(100, 10_000), default=_WIDTH)
-def show_command(world: str, output: Path | None, width: int) -> None:
+def show_command(world: str, output: Path | None) -> None:
     """Draw WORLD in the terminal, with docks, closed doors and robots, or write a picture of it."""
     if output is None:
         _draw(load_world(world))
@@ -49,7 +48,7 @@ def show_command(world: str, output: Path | None, width: int) -> None:
     from jacaros.look.page.picture import picture_svg  # here: only for pictures
     from jacaros.look.records.recording import Recording
 
-    svg = picture_svg(Recording(world=load_world(world).drawing()), width)
+    svg = picture_svg(Recording(world=load_world(world).drawing()), _WIDTH)
     _write(output, svg if kind == ".svg" else _png(svg))
 
 

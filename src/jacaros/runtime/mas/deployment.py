@@ -47,7 +47,6 @@ class AgentSpec:
         join: workspaces it joins at its start, in order. They include all workspaces of ``focus``.
         focus: artifacts it focuses at its start, in order.
         agent_class: name of the class as written.
-        host: the requested computer, without effect.
         python_class: the class of a Python agent, in place of a file.
         span: location of the declaration.
     """
@@ -61,7 +60,6 @@ class AgentSpec:
     join: tuple[str, ...] = ()
     focus: tuple[FocusSpec, ...] = ()
     agent_class: str | None = None
-    host: str | None = None
     python_class: type | None = None
     span: Span | None = field(default=None, compare=False, repr=False)
 
@@ -118,7 +116,6 @@ class Deployment:
         environment: the class of ``environment:`` in a `.mas2j` file as written; None without one.
         artifact_environment: whether agents use artifacts: in a `.jcm` file, a lone `.asl` file, or with one of the known
             environment classes.
-        infrastructure: infrastructure of a `.mas2j` file, or platforms of a `.jcm` file, as written.
         world: the world file (a path that exists, or the name as written).
         world_span: location of its name.
         source_paths: folders that are searched for agent programs and included files, in order.
@@ -131,7 +128,6 @@ class Deployment:
     workspaces: tuple[WorkspaceSpec, ...] = ()
     environment: str | None = None
     artifact_environment: bool = False
-    infrastructure: tuple[str, ...] = ()
     world: str | None = None
     world_span: Span | None = field(default=None, compare=False, repr=False)
     source_paths: tuple[Path, ...] = ()

@@ -1,6 +1,5 @@
 """Tables and charts of counts."""
 
-import gzip
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -55,15 +54,6 @@ def test_external_figures_get_a_column() -> None:
     )
     with pytest.raises(ValueError, match="zip"):
         table.with_column("short", [1])
-
-
-def test_csv_has_a_line_for_each_group_with_files() -> None:
-    size = len(gzip.compress(b"x\n" * 18, 9, mtime=0))
-    assert metrics.as_csv(metrics.group_table([SQUARE])) == (
-        "program,group,files,identifiers,names,lines,code_lines,gzip_bytes,gzip_code_bytes\n"
-        f"02_square,agents,1,1,2,18,18,{size},{size}\n"
-        f"02_square,total,1,1,2,18,18,{size},{size}\n"
-    )
 
 
 def test_a_table_shows_the_files() -> None:

@@ -91,9 +91,15 @@ def test_a_program_with_errors_fails(folder: Path, outcome: Outcome) -> None:
     assert "2 passed, 1 failed, 1 file cannot be run" in output
 
 
-def test_output_is_coloured_only_on_terminals(folder: Path, outcome: Outcome) -> None:
+def test_output_is_coloured_only_on_terminals(folder: Path, outcome: Outcome, monkeypatch) -> None:
     assert "\x1b[" not in outcome()[1]
-    assert "\x1b[32mok" in outcome("--color", "always")[1]
+    (folder / "tests" / "evil.asl").write_text('@e[test] +!e <- .print("\x1b[2J").', encoding="utf-8")
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True)
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    output = outcome("-v")[1]
+    assert "\x1b[32mok" in output
+    assert "\x1b[2J" not in output
 
 
 def test_warnings_go_to_the_standard_error_output(folder: Path, outcome: Outcome) -> None:

@@ -34,7 +34,6 @@ def test_programs_are_formatted_in_place(folder: Path, outcome: Outcome) -> None
 
 def test_check_and_diff_show_the_difference_and_change_nothing(folder: Path, outcome: Outcome) -> None:
     assert outcome("--check", "a.asl") == (1, DIFFERENCE, "1 of 1 file would change\n")
-    assert outcome("--diff", "a.asl") == (0, DIFFERENCE, "1 of 1 file would change\n")
     assert outcome("--check", "inner") == (0, "", "0 of 1 file would change\n")
     assert (folder / "a.asl").read_text(encoding="utf-8") == UGLY
 

@@ -11,18 +11,6 @@ from jacaros.runtime.cli.main import call
 COMMAND = ("ros",)
 
 
-def test_types_are_defined_in_folders_that_the_command_names(tmp_path, monkeypatch, told: Told):
-    monkeypatch.chdir(tmp_path)
-    definition = tmp_path / "types" / "arm_msgs" / "msg" / "Thing.msg"
-    definition.parent.mkdir(parents=True)
-    definition.write_text("float64 weight\n")
-    told("show", "arm_msgs/msg/Thing", "--world", "house", "--interfaces", "types")
-    (tmp_path / "maps").mkdir()
-    told("map", "odom", "--world", "house", "--interfaces", "types", "-o", "maps/robot.yaml")
-    assert '\ninterfaces: ["../types"]\n' in (tmp_path / "maps" / "robot.yaml").read_text()
-    told("check", "maps/robot.yaml", "--world", "house")
-
-
 def test_each_entry_is_listed_on_one_line(told: Told) -> None:
     lines = told("list", "--world", "house").splitlines()
     assert "topic /odom nav_msgs/msg/Odometry publishers=1 subscriptions=0" in lines

@@ -27,21 +27,21 @@ def test_a_world_is_drawn_as_text_without_a_terminal(outcome: Outcome) -> None:
 
 
 def test_a_picture_of_a_world_is_written(folder: Path, outcome: Outcome) -> None:
-    assert outcome("show", "house", "--output", "house.svg", "--width", "300") == (
+    assert outcome("show", "house", "--output", "house.svg") == (
         0,
         "wrote house.svg\n",
         "",
     )
     picture = ElementTree.parse("house.svg").getroot()
-    assert picture.get("width") == "300"
+    assert picture.get("width") == "640"
     assert "living room" in (folder / "house.svg").read_text()
 
 
 def test_a_picture_of_a_world_is_written_as_png(folder: Path, outcome: Outcome) -> None:
-    assert outcome("show", "house", "--output", "house.png", "--width", "300")[0] == 0
+    assert outcome("show", "house", "--output", "house.png")[0] == 0
     picture = (folder / "house.png").read_bytes()
     assert picture.startswith(b"\x89PNG")
-    assert int.from_bytes(picture[16:20], "big") == 300
+    assert int.from_bytes(picture[16:20], "big") == 640
 
 
 def test_a_missing_png_library_suggests_what_to_install(folder: Path, outcome, monkeypatch):

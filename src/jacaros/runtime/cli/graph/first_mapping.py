@@ -1,6 +1,5 @@
 """``jacaros ros map``: a first mapping file for a graph, for you to edit."""
 
-import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import product
@@ -74,8 +73,7 @@ def mapping_for(
     frames: dict[str, str],
     file: str,
     options: str,
-    left: Sequence[GraphEntry] = (),
-    interfaces: Sequence[str] = (),
+    left: Sequence[GraphEntry],
 ) -> str:
     """Return the text of a mapping file.
 
@@ -86,7 +84,6 @@ def mapping_for(
         file: name of the file, for the comments.
         options: options of the commands in the comments, such as ``--ros ros2``.
         left: topics, services and actions that were left out, for a comment.
-        interfaces: folders with interface definitions, relative to the file.
 
     Raises:
         UnknownInterface: the definition of a type is not available.
@@ -102,7 +99,7 @@ def mapping_for(
             if len(artifacts) == 1 or space == artifact.namespace:
                 _add(joined, artifact, thing)
         artifact.entries += _frame(artifact, frames)
-    return "\n".join([*_file(artifacts, file, options, interfaces), *_left(left, options)]) + "\n"
+    return "\n".join([*_file(artifacts, file, options), *_left(left, options)]) + "\n"
 
 
 def _add(joined: Joined, artifact: _Artifact, thing: GraphEntry) -> None:
@@ -151,10 +148,8 @@ def _joins(frames: dict[str, str], target: str, source: str) -> bool:
     return target in frames and source in frames and root(frames, target) == root(frames, source)
 
 
-def _file(artifacts: list[_Artifact], file: str, options: str, interfaces: Sequence[str]) -> Iterator[str]:
+def _file(artifacts: list[_Artifact], file: str, options: str) -> Iterator[str]:
     yield from _head(artifacts, file, options)
-    if interfaces:
-        yield f"interfaces: {json.dumps(list(interfaces))}"
     several = len(artifacts) > 1
     if several:
         yield "artifacts:"

@@ -110,15 +110,8 @@ class Debugger:
         """Call *listener* with every new state. Return a function that ends this."""
         return entered(self._listeners, listener)
 
-    async def wait_until_paused(self, timeout: float | None = None) -> DebugState:
-        """Wait until the run is paused, by a breakpoint or otherwise. Return the state.
-
-        Args:
-            timeout: time limit in seconds of real time. None: no limit. Not for the virtual clock.
-
-        Raises:
-            TimeoutError: it was not paused in time.
-        """
+    async def wait_until_paused(self) -> DebugState:
+        """Wait until the run is paused, by a breakpoint or otherwise. Return the state."""
         if self.paused:
             return self._state
         found: asyncio.Future[DebugState] = asyncio.get_running_loop().create_future()
@@ -129,7 +122,7 @@ class Debugger:
 
         end = self.listen(notice)
         try:
-            return await asyncio.wait_for(found, timeout)
+            return await found
         finally:
             end()
 

@@ -2,7 +2,7 @@
 
 import asyncio
 from collections.abc import Sequence
-from typing import Any, TypeVar
+from typing import Any
 
 from jacaros.agents.body.values import UNKEPT, to_term
 from jacaros.agents.language.loader import parse_term
@@ -16,48 +16,8 @@ from jacaros.runtime.mas.embedding.running_agent import question, values_of
 from jacaros.runtime.mas.embedding.waits import RunEnded, RunWaits
 from jacaros.runtime.mas.messaging import Arrivals, Correspondent, ListNames, Send
 
-T = TypeVar("T")
 
-
-class Stream(Arrivals[T]):
-    """An asynchronous iterator over items as they arrive. It ends with the run, once all items have been read.
-
-    Args:
-        waits: waits of the run.
-        what: what is missing while there is no item, for errors.
-    """
-
-    def __init__(self, waits: RunWaits, what: str) -> None:
-        super().__init__()
-        self._waits = waits
-        self._what = what
-
-    async def get(self, timeout: float | None = None) -> T:
-        """Return the next item, waiting until it arrives.
-
-        Args:
-            timeout: time limit in seconds of the run's clock. None: no limit.
-
-        Raises:
-            TimeoutError: no item arrived in time.
-            RunEnded: the run has ended, so no item will arrive.
-        """
-        return await self.next(lambda arrival: self._waits.wait(arrival, lambda: self._what, timeout))
-
-    def __bool__(self) -> bool:
-        return True
-
-    def __aiter__(self) -> "Stream[T]":
-        return self
-
-    async def __anext__(self) -> T:
-        try:
-            return await self.get()
-        except RunEnded:
-            raise StopAsyncIteration from None
-
-
-class Mailbox(Stream[Message]):
+class Mailbox(Arrivals[Message]):
     """A participant that is neither an agent nor an artifact. It receives and sends messages.
 
     ``async for message in mailbox`` iterates over the messages as they arrive; `get` waits for one. Answers to `ask`
@@ -74,9 +34,35 @@ class Mailbox(Stream[Message]):
     """
 
     def __init__(self, name: str, send: Send, names: ListNames, waits: RunWaits) -> None:
-        super().__init__(waits, f"no message for {name}")
-        self.name = name
+        super().__init__()
+        self.name, self._waits = name, waits
         self._sender = Correspondent(name, send, names)
+
+    async def get(self, timeout: float | None = None) -> Message:
+        """Return the next message, waiting until it arrives.
+
+        Args:
+            timeout: time limit in seconds of the run's clock. None: no limit.
+
+        Raises:
+            TimeoutError: no message arrived in time.
+            RunEnded: the run has ended, so none will arrive.
+        """
+        return await self.next(
+            lambda arrival: self._waits.wait(arrival, lambda: f"no message for {self.name}", timeout)
+        )
+
+    def __bool__(self) -> bool:
+        return True
+
+    def __aiter__(self) -> "Mailbox":
+        return self
+
+    async def __anext__(self) -> Message:
+        try:
+            return await self.get()
+        except RunEnded:
+            raise StopAsyncIteration from None
 
     def send(
         self, receiver: str, performative: str, content: object, reply_to: Message | None = None

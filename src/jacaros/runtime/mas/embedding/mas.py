@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -620,25 +621,15 @@ def run(main: Coroutine[Any, Any, T], *, clock: Literal["real", "fast"] = "real"
         UsageError: an event loop is already running, as in a notebook (``await`` the coroutine there); or the clock is
             unknown.
     """
-    chosen: Clock
-    try:
-        if clock not in ("real", "fast"):
-            raise UsageError(f"unknown clock `{clock}`; expected `real` or `fast`")
-        if _is_running():
-            raise UsageError(
-                "an event loop is already running (a notebook?); await the coroutine instead of calling jacaros.run"
-            )
-    except UsageError:
+    wrong = ""
+    if clock not in ("real", "fast"):
+        wrong = f"unknown clock `{clock}`; expected `real` or `fast`"
+    with suppress(RuntimeError):
+        asyncio.get_running_loop()
+        wrong = "an event loop is already running (a notebook?); await the coroutine instead of calling jacaros.run"
+    if wrong:
         main.close()
-        raise
+        raise UsageError(wrong)
     chosen = VirtualClock() if clock == "fast" else WallClock()
     with asyncio.Runner(loop_factory=partial(new_event_loop, chosen)) as runner:
         return runner.run(main)
-
-
-def _is_running() -> bool:
-    try:
-        asyncio.get_running_loop()
-    except RuntimeError:
-        return False
-    return True

@@ -162,7 +162,6 @@ class AgentPart:
     join: list[JoinPart] = field(default_factory=list)
     focus: list[FocusPart] = field(default_factory=list)
     agent_class: str | None = None
-    host: str | None = None
     folders: tuple[Path, ...] = ()
 
     def instance_names(self) -> list[str]:
@@ -204,7 +203,6 @@ class ProjectPart:
     workspaces: list[WorkspacePart] = field(default_factory=list)
     organisations: dict[str, Ignored] = field(default_factory=dict)
     environment: str | None = None
-    infrastructure: list[str] = field(default_factory=list)
     world: str | None = None
     world_span: Span | None = None
     mappings: list[WrittenName] = field(default_factory=list)

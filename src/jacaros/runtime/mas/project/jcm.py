@@ -293,7 +293,6 @@ class JcmReader(ProjectReader):
 
     def _platforms(self, key: ProjectToken) -> None:
         for text, span in self._classes(f"a platform after `{key.text}:`"):
-            self.part.infrastructure.append(text)
             name, _, parameters = text.partition("(")
             switched_off = parameters.strip('") ') == "false"
             if name.strip() not in _OWN_PLATFORMS and not switched_off:
@@ -379,7 +378,7 @@ class JcmReader(ProjectReader):
             self.class_of_agent(key.text, text, span)
 
     def _host_of_agent(self, agent: AgentPart, key: ProjectToken) -> None:
-        agent.host = " ".join(text for text, _ in self.names())
+        self.names()
         self.unsupported(NODES, f"`{key.text}` of agent `{agent.name}`", self.span_of(key))
 
     def _option(self, agent: AgentPart, key: ProjectToken) -> None:

@@ -29,7 +29,7 @@ class Mas2jReader(ProjectReader):
     def _infrastructure(self, _: ProjectToken) -> None:
         """Read the infrastructure. Agents always share one process here."""
         token = self.token
-        self.part.infrastructure.append(self._class())
+        self._class()
         if token.text.lower() not in _OWN_INFRASTRUCTURES:
             span = self.span_of(token)
             self.unsupported(INFRASTRUCTURES, f"the infrastructure `{token.text}`", span)
@@ -131,7 +131,7 @@ class Mas2jReader(ProjectReader):
             self.fail(f"expected `;` after agent `{agent.name}`, found {key}", help=help)
         self.advance()
         if key.text == "at":
-            agent.host = text_of(self.take("the name of a host", *_VALUE))
+            self.take("the name of a host", *_VALUE)
             self.unsupported(NODES, f"`at` of agent `{agent.name}`", self.span_of(key))
         elif key.text == "agentClass":
             agent.agent_class = self.name("a class name").text + self.parameters()

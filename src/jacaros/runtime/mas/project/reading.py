@@ -143,7 +143,6 @@ def _import(part: ProjectPart, used: ProjectPart) -> None:
     part.unsupported[:0] = used.unsupported
     part.mapped[:0] = used.mapped
     part.folders = tuple(dict.fromkeys([*part.folders, *used.folders]))
-    part.infrastructure = part.infrastructure or used.infrastructure
     if not part.world:
         part.world, part.world_span = used.world, used.world_span
 
@@ -161,7 +160,6 @@ def _deployment(path: Path, part: ProjectPart, diagnostics: list[Diagnostic]) ->
         workspaces=resolver.specs(),
         environment=part.environment,
         artifact_environment=path.suffix == _JCM or cartago or bool(part.mapped),
-        infrastructure=tuple(part.infrastructure),
         world=part.world,
         world_span=part.world_span,
         source_paths=part.folders,

@@ -239,7 +239,6 @@ class Resolver:
             beliefs=self._literals(agent.beliefs, "belief"),
             goals=self._literals(agent.goals, "goal"),
             agent_class=agent.agent_class,
-            host=agent.host,
             span=agent.span,
         )
         return [self._situated(replace(first, name=name), agent) for name in agent.instance_names()]

@@ -79,14 +79,12 @@ def test_all_of_an_agent_in_mas2j(folder: Path, load: Load) -> None:
     assert bob.source_path == folder / "carl.asl"
     assert bob.options == {"verbose": "2", "events": "requeue"}
     assert (bob.beliefs, bob.goals) == ('p(1), q("x")', "go")
-    assert bob.host == "host1"
     assert names(deployment) == ["bob", "alice1", "alice2", "carl"]
     assert agent(deployment, "alice2").declared_name == "alice"
     assert agent(deployment, "alice2").source_path == folder / "alice.asl"
     assert deployment.name == "rescue"
     assert deployment.environment == "jaca.CartagoEnvironment"
     assert deployment.artifact_environment
-    assert deployment.infrastructure == ("Local(pool,4)",)
     assert deployment.source_paths[:2] == (folder / "src", folder / "more")
 
 
@@ -304,7 +302,6 @@ def test_unsupported_declarations_are_skipped_with_a_warning(load: Load) -> None
         "the package `lib` has no effect: Java packages are not supported",
     ]
     assert all(warning.severity == "warning" for warning in deployment.ignored)
-    assert deployment.infrastructure == ("local(pool,4)",)
 
 
 def test_misspelt_names_are_reported_with_a_suggestion(report: Report) -> None:
