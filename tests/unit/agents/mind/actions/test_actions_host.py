@@ -1,160 +1,103 @@
-"""Internal actions on time, chance, output and the system of agents."""
-
-from itertools import islice
-from random import Random
-from types import SimpleNamespace
+"""Internal actions that use the host: agents, output, messages and explanations."""
 
 import pytest
-from fake_context import term
+from action_answers import answers, calls
+from recording_host import RecordingHost, mind, programs
 
-from jacaros import __version__
-from jacaros.agents.mind.actions.internal_action import STANDARD, ActionError, WrongArguments
+from jacaros.agents.language.loader import parse_term
+from jacaros.agents.language.lowering import lower_value
+from jacaros.agents.mind.actions.agents import written_question
+from jacaros.agents.mind.actions.internal_action import STANDARD
 from jacaros.agents.mind.actions.java_format import java_format
+from jacaros.agents.mind.state.act import SpeechAct
 from jacaros.agents.terms.text import text
-from jacaros.agents.terms.values import String, Var
+from jacaros.agents.terms.values import Var, atom, functor
 
-# time
-
-A_MOMENT = 1_700_000_123.456  # 2023-11-14 22:15:23.456 UTC
-
-
-def test_time_and_date_are_those_of_the_clock_in_utc(mind):
-    mind.architecture.time = A_MOMENT
-    parts = [Var("H"), Var("M"), Var("S"), Var("Ms")]
-    assert mind.instances(".time", *parts, of=list(parts)) == ["[22,15,23,456]"]
-    assert mind.succeeds(".time", *parts[:3])
-    assert text(term(parts[:3])) == "[22,15,23]"
-    mind.architecture.time = A_MOMENT
-    parts = [Var("Y"), Var("M"), Var("D")]
-    assert mind.instances(".date", *parts, of=list(parts)) == ["[2023,11,14]"]
-    assert mind.succeeds(".date", 2023, 11, 14)
-    assert not mind.succeeds(".date", 2023, 11, 15)
-
-
-def test_other_times_fail_and_nano_time_counts_nanoseconds(mind):
-    assert mind.succeeds(".time", 0, 0, Var("S"))
-    assert not mind.succeeds(".time", 1, Var("M"), Var("S"))
-    mind.architecture.time = 2.5
-    assert mind.result(".nano_time") == "2500000000"
-    assert not mind.succeeds(".nano_time", 1)
-
-
-# chance
-
-
-def test_a_seed_repeats_what_is_drawn_from_the_generator_of_the_agent(mind):
-    mind.architecture.random = Random(7)
-    same = Random(7)
-    variable = Var("X")
-    assert mind.succeeds(".random", variable)
-    assert variable.ref == same.random()
-    assert mind.result(".random", [String("a"), "b", "c"]) in ('"a"', "b", "c")
-    drawn = []
-    for _ in range(2):
-        assert mind.succeeds(".set_random_seed", 20)
-        drawn.append(mind.result(".random"))
-    assert drawn[0] == drawn[1]
-    with pytest.raises(WrongArguments):
-        mind.succeeds(".set_random_seed", "x")
+SYSTEM = """
+.create_agent(dora) => yes: ('create', 'dora', None, {})
+.create_agent("emil", "x.asl") => yes: ('create', 'emil', 'x.asl', {})
+.create_agent(friend, "x.asl") => yes: ('create', 'friend', 'x.asl', {})
+.create_agent(X, "x.asl") => "x": ('create', 'x', 'x.asl', {})
+.create_agent(Friend, "x.asl") & .concat(Friend, "", X) => "friend_1": ('create', 'friend', 'x.asl', {})
+.create_agent(d, "x.asl", [agentClass("a.B(1)")]) => yes: ('create', 'd', 'x.asl', {'agentClass': 'a.B(1)'})
+.create_agent(d, "x.asl", [beliefBaseClass(c)]) => yes: ('create', 'd', 'x.asl', {'beliefBaseClass': 'c'})
+.create_agent(broken, "x.asl") => error: .create_agent: agent broken could not be created: ('create', 'broken', 'x.asl', {})
+.create_agent(dora, x) => wrong: the second argument of .create_agent must be a string, not x: -
+.create_agent(dora, "x.asl", a) => wrong: the third argument of .create_agent must be a list, not a: -
+.create_agent(dora, "x.asl", [color(red)]) => wrong: .create_agent: unknown option color(red): -
+.kill_agent(friend, 1500) => yes: ('kill', 'friend', 1.5)
+.kill_agent("friend") => yes: ('kill', 'friend', 0.0)
+.kill_agent(carl) => no: ('kill', 'carl', 0.0)
+.kill_agent(friend, soon) => wrong: the second argument of .kill_agent must be a number, not soon: -
+.stopMAS => yes: ('stop', 0.0, 0)
+.stopMAS(2000) => yes: ('stop', 2.0, 0)
+.stopMAS(0, 3) => yes: ('stop', 0.0, 3)
+.stopMAS(500, false) => yes: ('stop', 0.5, 0)
+.stopMAS(-1) => yes: ('stop', 0.0, 0)
+.stopMAS(now) => wrong: the first argument of .stopMAS must be a number, not now: -
+.stopMAS(0, code) => wrong: the second argument of .stopMAS must be a number, not code: -
+.log(severe, "n=", 2) => yes: ('error', 'n=2')
+.log(warning, "n=", 2) => yes: ('warning', 'n=2')
+.log(info, "n=", 2) => yes: ('info', 'n=2')
+.log(fine, "n=", 2) => yes: ('debug', 'n=2')
+.log(finest, "n=", 2) => yes: ('debug', 'n=2')
+.log(x, "n=", 2) => yes: ('info', 'n=2')
+.log(1) => wrong: the first argument of .log must be a level such as info, not 1: -
+.log("info") => wrong: the first argument of .log must be a level such as info, not "info": -
+.log(f(1)) => wrong: the first argument of .log must be a level such as info, not f(1): -
+"""
 
 
-def test_random_gives_as_many_answers_as_are_asked_for(mind):
-    variable = Var("X")
-    numbers = [float(n) for n in mind.instances(".random", variable, 5, of=variable)]
-    assert len(set(numbers)) == 5
-    assert all(0 <= n < 1 for n in numbers)
-    assert len(mind.instances(".random", ["a", "b"], variable, 3, of=variable)) == 3
-    assert len(list(islice(mind.run(".random", variable, 0), 100))) == 100
-    assert not mind.succeeds(".random", [], Var("X"))
-    assert not mind.succeeds(".random", [], Var("X"), 0)
+@calls(SYSTEM)
+def test_what_the_host_is_asked_for(formula, wanted):
+    host, asked = mind(""), []
+
+    def create(name, source, classes):
+        asked.append(("create", name, source, dict(classes)))
+        return None if name == "broken" else f"{name}_1" if name == "friend" else name
+
+    def kill(name, delay, killer):
+        asked.append(("kill", name, delay))
+        return name in host.agent_names()
+
+    host.create_agent, host.kill_agent = create, kill
+    host.stop_system = lambda delay, code: asked.append(("stop", delay, code))
+    answer = answers(formula, host)
+    assert f"{answer}: {', '.join(map(str, asked + host.logged)) or '-'}" == wanted
 
 
-@pytest.mark.parametrize(
-    "arguments", [(1,), ("a",), (Var("X"), "a"), (["a"], "b"), (["a"], Var("X"), "n"), (["a"],)]
-)
-def test_random_needs_a_variable(mind, arguments):
-    with pytest.raises(WrongArguments):
-        mind.succeeds(".random", *arguments)
+PRINTED = """
+print joins its arguments without separators => a1 x["y",f(2.5)] | a1 x["y",f(2.5)]
+    !g. +!g <- .print(a, 1, " x", ["y", f(2.5)]); .println(a, 1, " x", ["y", f(2.5)]).
+unbound variables are marked at the top => X<no-value> f(Y)
+    !g. +!g <- .print(X, " ", f(Y)).
+printf shows what the format makes of fitting values => 2.3 text [1,a] false
+    !g. +!g <- .printf("%.1f %s %s %b", 2.25, "text", [1, a], false).
+printf refuses other formats => internal_action use %.0f | wrong_arguments
+    !g. +!g <- !t("%d"); !t(a).
+    +!t(F) <- .printf(F, 1).
+    -!t("%d")[error(E), error_msg(M)] : .substring("use %.0f", M) <- .print(E, " use %.0f").
+    -!t(a)[error(E)] <- .print(E).
+puts prints a text with values and fills a variable => a b, 3, a b; #{?} | aa b | x=1
+    !g. +!g <- X = "a b"; Y = 2; .puts("#{X}, #{Y+1}, #{X}; #{?}"); .puts("a", "#{X}"); !h.
+    +!h <- X = 1; .puts("x=#{X}", R); .print(R).
+print unifier shows the variables that have values => X=1 | Y="s" | done | done
+    !g. +!g <- X = 1; Y = "s"; .print_unifier; Z = W; !h. +!h <- .print_unifier.
+"""
 
 
-# agents
+@programs(PRINTED)
+def test_what_a_program_prints(program, output):
+    host = mind(program)
+    host.run()
+    assert host.printed == output
 
 
-def test_my_name_and_all_names_are_atoms(mind):
-    assert mind.result(".my_name") == "bob"
-    assert mind.succeeds(".my_name", "bob")
-    assert not mind.succeeds(".my_name", "carl")
-    assert mind.result(".all_names") == "[bob,carl]"
-
-
-def test_create_agent_asks_the_host_and_binds_a_variable_to_the_final_name(mind):
-    assert mind.succeeds(".create_agent", "dora")
-    assert mind.succeeds(".create_agent", String("emil"), String("x.asl"))
-    assert mind.succeeds(".create_agent", "bob", String("x.asl"))
-    assert mind.architecture.created == [("dora", None, {}), ("emil", "x.asl", {}), ("bob", "x.asl", {})]
-    first, second = Var("Dora"), Var("Bob")
-    assert mind.succeeds(".create_agent", first, String("x.asl"))
-    assert mind.succeeds(".create_agent", second, String("x.asl"))
-    assert (text(first), text(second)) == ('"dora"', '"bob_1"')
-
-
-def test_create_agent_names_the_classes_and_fails_when_the_host_cannot(mind):
-    options = [("agentClass", String("a.B(1)")), ("beliefBaseClass", "c")]
-    assert mind.succeeds(".create_agent", "dora", String("x.asl"), options)
-    classes = {"agentClass": "a.B(1)", "beliefBaseClass": "c"}
-    assert mind.architecture.created == [("dora", "x.asl", classes)]
-    mind.architecture.broken = True
-    with pytest.raises(ActionError, match="dora could not be created"):
-        mind.succeeds(".create_agent", "dora", String("x.asl"))
-
-
-@pytest.mark.parametrize("arguments", [("x",), (String("x.asl"), "a"), (String("x.asl"), [("color", "red")])])
-def test_create_agent_refuses_other_arguments(mind, arguments):
-    with pytest.raises(WrongArguments):
-        mind.succeeds(".create_agent", "dora", *arguments)
-    assert mind.architecture.created == []
-
-
-def test_kill_agent_ends_an_agent_and_can_wait(mind):
-    assert mind.succeeds(".kill_agent", "carl", 1500)
-    assert mind.architecture.delay == 1.5
-    assert not mind.succeeds(".kill_agent", "carl", 1500)
-    with pytest.raises(WrongArguments):
-        mind.succeeds(".kill_agent", "bob", "soon")
-    mind.architecture.agents = ["bob", "carl"]
-    assert mind.succeeds(".kill_agent", "carl")
-    assert not mind.succeeds(".kill_agent", String("carl"))
-    assert mind.architecture.agents == ["bob"]
-
-
-@pytest.mark.parametrize(
-    ("arguments", "asked"),
-    [((), (0.0, 0)), ((2000,), (2.0, 0)), ((0, 3), (0.0, 3)), ((500, "false"), (0.5, 0)), ((-1,), (0.0, 0))],
-)
-def test_stop_mas_ends_the_run(mind, arguments, asked):
-    assert mind.succeeds(".stopMAS", *arguments)
-    assert mind.architecture.stopped == asked
-
-
-@pytest.mark.parametrize("arguments", [("now",), (0, "code")])
-def test_stop_mas_needs_numbers(mind, arguments):
-    with pytest.raises(WrongArguments):
-        mind.succeeds(".stopMAS", *arguments)
-
-
-@pytest.mark.parametrize("action", [".print", ".println"])
-def test_print_joins_its_arguments_without_separators(mind, action):
-    assert mind.succeeds(action, "a", 1, String(" x"), [String("y"), ("f", 2.5)])
-    assert mind.architecture.printed == ['a1 x["y",f(2.5)]']
-
-
-def test_print_keeps_line_breaks_and_marks_unbound_variables(mind):
-    assert mind.succeeds(".print")
-    assert mind.architecture.printed == [""]
-    assert mind.succeeds(".print", String("one\ntwo"))
-    assert mind.architecture.printed == ["", "one\ntwo"]
-    assert mind.succeeds(".print", Var("X"), " ", ("f", Var("Y")))
-    assert mind.architecture.printed[2:] == ["X<no-value> f(Y)"]
+def test_print_keeps_line_breaks():
+    host = mind(r'!g. +!g <- .print; .print("one\ntwo").')
+    host.run()
+    assert host.printed == ["", "one\ntwo"]
+    assert answers(".puts(1)").startswith("wrong: ")
 
 
 @pytest.mark.parametrize(
@@ -183,7 +126,7 @@ def test_print_keeps_line_breaks_and_marks_unbound_variables(mind):
     ],
 )
 def test_formats_are_read_as_java_reads_them(template, arguments, shown):
-    assert java_format(template, arguments) == shown  # type: ignore[arg-type]
+    assert java_format(template, arguments) == shown
 
 
 @pytest.mark.parametrize(
@@ -192,72 +135,109 @@ def test_formats_are_read_as_java_reads_them(template, arguments, shown):
 )
 def test_wrong_formats_are_refused(template, arguments):
     with pytest.raises(ValueError, match="%"):
-        java_format(template, arguments)  # type: ignore[arg-type]
-
-
-def test_printf_shows_what_the_format_makes_of_fitting_values(mind):
-    assert mind.succeeds(".printf", String("%.1f %s %s %b"), 2.25, String("text"), [1, "a"], "false")
-    assert mind.architecture.printed == ["2.3 text [1,a] false"]
-    with pytest.raises(ActionError, match=r"use %\.0f"):
-        mind.succeeds(".printf", String("%d"), 1)
-    with pytest.raises(WrongArguments, match="must be a string, not a"):
-        mind.succeeds(".printf", "a")
-
-
-def test_puts_fills_values_into_texts_or_a_variable_and_appends(mind):
-    mind.readable = {"X": 1.0}
-    assert mind.result(".puts", String("x=#{X}")) == '"x=1"'
-    assert mind.architecture.printed == []
-    mind.readable = {"X": String("a b"), "Y+1": 3.0}
-    assert mind.succeeds(".puts", String("#{X}, #{Y+1}, #{X}; #{?}"))
-    assert mind.architecture.printed == ["a b, 3, a b; #{?}"]
-    with pytest.raises(WrongArguments):
-        mind.succeeds(".puts", 1)
-    assert mind.succeeds(".puts", String("a"), String("#{X}"))
-    assert mind.architecture.printed[1:] == ["aa b"]
+        java_format(template, arguments)
 
 
 @pytest.mark.parametrize(
-    ("level", "known"),
+    ("term", "question"),
     [
-        ("severe", "error"),
-        ("warning", "warning"),
-        ("info", "info"),
-        ("fine", "debug"),
-        ("finest", "debug"),
-        ("x", "info"),
+        ("stopped", "stopped"),
+        ('"why did it stop"', "why did it stop"),
+        ("{ +alarm(_) }", "+alarm(_)"),
+        ("{ !go(dock) }", "!go(dock)"),
+        ("belief(battery(12))", "belief battery(12)"),
+        ("plan(low)", "plan @low"),
+        ('plan("robot.asl:14")', "plan robot.asl:14"),
+        ('command("/cmd_vel")', "command /cmd_vel"),
+        ("operation(dock)", "operation dock"),
     ],
 )
-def test_log_translates_the_levels_of_java(mind, level, known):
-    assert mind.succeeds(".log", level, String("n="), 2)
-    assert mind.architecture.logged == [(known, "n=2")]
+def test_questions_are_terms(term, question):
+    assert written_question(lower_value(parse_term(term))) == question
 
 
-@pytest.mark.parametrize("level", [1, String("info"), ("f", 1)])
-def test_log_needs_a_level(mind, level):
-    with pytest.raises(WrongArguments):
-        mind.succeeds(".log", level)
+def sent(program: str) -> RecordingHost:
+    host = mind(f'!g. +!g <- {program}. -!g[error(E), code(C)] <- .print(E, " ", C).')
+    host.run()
+    return host
 
 
-def test_verbose_and_version_are_known(mind):
-    assert mind.succeeds(".verbose", 2)
-    assert mind.agent.options.verbose == 2
-    assert STANDARD[".stopMAS"].suspends
-    assert mind.result(".version") == f'"{__version__}"'
+def told(message: SpeechAct) -> str:
+    return f"{message.sender} {message.receiver} {message.performative} {text(message.content)}"
 
 
-@pytest.mark.parametrize("level", ["loud", -1, 3])
-def test_verbose_knows_three_levels(mind, level):
-    with pytest.raises(WrongArguments):
-        mind.succeeds(".verbose", level)
+@pytest.mark.parametrize(
+    ("body", "receivers"),
+    [
+        (".send(friend, tell, p)", 1),
+        ('.send("friend", "tell", p)', 1),
+        ("F = friend; .send(F, tell, p)", 1),
+        ('F = "friend"; T = tell; .send(F, T, p)', 1),
+        (".send([friend, friend], tell, p)", 2),
+        ("L = [friend, friend]; .send(L, tell, p)", 2),
+        ("L = []; .send(L, tell, p)", 0),
+        ("T = tell; .send(friend, T, p)", 1),
+        (".send('friend', tell, p)", 1),
+        (".broadcast(tell, p)", 1),
+    ],
+)
+def test_a_message_goes_to_all_that_are_named(body, receivers):
+    host = sent(body)
+    assert [told(message) for message in host.sent] == ["tester friend tell p"] * receivers
+    assert host.printed == []
 
 
-def test_print_unifier_shows_the_variables_that_have_values(mind):
-    assert mind.succeeds(".print_unifier")
-    assert mind.architecture.printed == ["done"]
-    bound = Var("Y")
-    mind.unify(bound, String("s"))
-    plan = SimpleNamespace(slots={"X": 5, "Y": 6, "Z": 7, "W": 8})
-    mind.intention = SimpleNamespace(frames=[[None, None, (), 0, plan, 1.0, bound, Var("Z"), None]])
-    assert mind.succeeds(".print_unifier")
-    assert mind.architecture.printed == ["done", "X=1", 'Y="s"', "done"]
+@pytest.mark.parametrize("to", ["self", "tester", "M"])
+def test_a_message_to_oneself_is_from_self(to):
+    host = mind(
+        f"me(tester). !g. +!g : me(M) <- .send({to}, achieve, h(1)). +!h(X)[source(S)] <- .print(X, S)."
+    )
+    host.run()
+    assert [told(message) for message in host.sent] == ["self tester achieve h(1)"]
+    assert host.printed == ["1self"]
+
+
+def test_bindings_are_applied_to_a_content_and_variables_are_new():
+    host = sent("X = 2; .send(friend, tell, p(X, X + 1, Y, Y)); Y = 7; Z = q(X); .send(friend, tell, Z)")
+    first, second = (message.content for message in host.sent)
+    assert first[1:3] == (2.0, 3.0)
+    assert first[3] is first[4]
+    assert first[3].__class__ is Var
+    assert first[3].ref is None
+    assert second == (functor("q", 1), 2.0)
+
+
+@pytest.mark.parametrize(
+    ("body", "failure"),
+    [
+        (".send(ghost, tell, p)", "receiver_not_found .send(ghost,tell,p)"),
+        ("N = ghost; .send(N, tell, p)", "receiver_not_found .send(ghost,tell,p)"),
+        (".send(X, tell, p)", "wrong_arguments .send(X,tell,p)"),
+        (".send(1, tell, p)", "wrong_arguments .send(1,tell,p)"),
+        (".send(friend, 1, p)", "wrong_arguments .send(friend,1,p)"),
+        (".send(friend, X, p)", "wrong_arguments .send(friend,X,p)"),
+        ("L = [friend, 1]; .send(L, tell, p)", "wrong_arguments .send([friend,1],tell,p)"),
+        (".send(friend, tell, p, 1)", "wrong_arguments .send(friend,tell,p,1)"),
+    ],
+)
+def test_a_message_that_cannot_be_sent_fails_the_step(body, failure):
+    host = sent(f"{body}; .print(never)")
+    assert host.printed == [failure]
+    assert [message.receiver for message in host.sent] == (["ghost"] if "ghost" in body else [])
+
+
+def test_messages_are_numbered_and_answers_name_their_question():
+    host = sent(".send(friend, tell, p); F = friend; .send(F, tell, q); .send(friend, askOne, r, A, 10)")
+    assert [message.id for message in host.sent] == ["mid1_tester", "mid2_tester", "mid3_tester"]
+    assert [message.flat for message in host.sent] == [True, True, True]
+    host = sent(".send(friend, tell, p(3), mid5_friend)")
+    assert host.sent[0].in_reply_to == "mid5_friend"
+
+
+def test_only_constant_arguments_are_specialised():
+    direct = STANDARD[".send"].direct
+    assert direct is not None
+    bob, tell = atom("bob"), atom("tell")
+    assert None not in (direct((bob, tell, None)), direct((None, tell, None)))
+    for other in ((bob, None, None), (1.0, tell, None), (bob, 1.0, None), (bob, atom("askOne"), None, None)):
+        assert direct(other) is None

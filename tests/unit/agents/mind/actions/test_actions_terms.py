@@ -1,203 +1,170 @@
-"""Internal actions on terms, their types, and strings."""
+"""Internal actions on terms, their types, strings, time and chance."""
 
 import pytest
-from fake_context import term
+from action_answers import answers, calls
+from recording_host import mind
 
-from jacaros.agents.mind.actions.internal_action import ActionError, WrongArguments
+from jacaros import __version__
+from jacaros.agents.mind.actions.internal_action import STANDARD
 from jacaros.agents.mind.actions.terms import replace_all
-from jacaros.agents.terms.collections import MapValue, QueueValue, SetValue
-from jacaros.agents.terms.plans import NO_LABEL, PLAN, RULE, make_body, step, trigger
-from jacaros.agents.terms.text import text
-from jacaros.agents.terms.values import (
-    ACTION,
-    ARITHMETIC,
-    TRUE,
-    Annotated,
-    String,
-    Term,
-    Var,
-    atom,
-    functor,
-    make_list,
-    structure,
-)
+
+TERMS = r"""
+.copy_term(f(X,Y,X,1), C) & .copy_term(C, f(x,y,Z,1)) => X Y x
+.rename_apart(f(X,Y,X,1), C) & .copy_term(C, f(x,y,Z,1)) => X Y x
+.copy_term(f(1), X) => f(1)
+.copy_term(f(1), f(2)) => no
+
+.add_annot(a, source(jomi), X) => a[source(jomi)]
+.add_annot(a[z], b, X) => a[b,z]
+.add_annot(a[b], b, X) => a[b]
+.add_annot(a, source(jomi), b) => no
+.add_annot(a[b|T], c, X) => a[b,c|T]
+.add_annot([a,f(1),[g(2)]], x, X) => [a[x],f(1)[x],[g(2)[x]]]
+.add_annot([1,Y], x, X) => [1,Y] Y
+.add_annot(a, b, a) => no
+.add_annot(a, b, a[b,c]) => yes
+.add_nested_source(p(1), pluto, X) => p(1)[source(pluto)]
+.add_nested_source(p(1)[source(venus)], pluto, X) => p(1)[source(pluto)[source(venus)]]
+.add_nested_source(p[source(a)[source(b)],t], c, X) => p[source(c)[source(a)[source(b)]],t]
+.add_nested_source([a,1,[b(2)]], c, X) => [a[source(c)],1,[b(2)[source(c)]]]
+.remove_source_annot(p[source(a),source(b)[source(c)],t], X) => p[t]
+.remove_source_annot(p[source(a)], X) => p
+.remove_source_annot(p, X) => p
+.remove_source_annot([p[source(a)],1], X) => [p,1]
+.remove_source_annot({ @l[source(bob)] +!g }, X) => { @l +!g }
+
+.type(1, X) => number | ground
+.type(Y+1, X) => number Y
+.type(a, X) => atom | literal | ground
+.type(ns::a, X) => atom | literal | ground
+.type(~a, X) => literal | structure | ground
+.type(a[b], X) => literal | structure | ground
+.type(f(1), X) => literal | structure | ground
+.type(~f(1), X) => literal | structure | ground
+.type(f(Y), X) => literal Y | structure Y
+.type(.print(a), X) => literal | structure | ground
+.type("s", X) => string | ground
+.type([1], X) => list | structure | ground
+.type([], X) => list | structure | ground
+.type([1|T], X) => list | structure
+.set.create(S) & .type(S, X) => set | ground
+.map.create(M) & .type(M, X) => map | ground
+.queue.create(Q) & .type(Q, X) => queue | ground
+.type({ h :- b }, X) => literal | structure | rule | ground
+.type({ !g; a }, X) => literal | structure | plan | ground
+.type(Y, X) => free Y
+.type(1, integer) => no
+.type(a[b], literal) => yes
+.atom([]) => no
+.literal([]) => no
+.internal_action(.print(a)) => yes
+.internal_action(print(a)) => no
+.internal_action(V) => no
+
+.substring("b", "abc") => yes
+.substring("x", "abc") => no
+.substring(a(10), b(t1,a(10))) => yes
+.substring("", "") => yes
+.substring("a", "bab", 1) => yes
+.substring("a", "bab", 0) => no
+.substring("an", "banana", 3, 4) => yes
+.substring("a", "abbacca", X) => 0 | 3 | 6
+.substring(a(10), b(t1,a(10)), X) => 5
+.substring("an", "banana", X, Y) => 1 2 | 3 4
+.substring("aa", "aaa", X) => 0 | 1
+.substring("x", "abc", X) => no
+.substring("", "ab", X) => 0 | 1
+.substring(X, "hello world", 6) => "world"
+.substring(X, "hello world", 0, 5) => "hello"
+.substring(X, a(10,20), 5, 7) => "20"
+.substring(X, "ab", 2) => ""
+.substring("hello", X, 1, 3) => "el"
+.substring(X, "abc", -1) => error: .substring: part -1 to 3 is outside the 3 characters
+.substring(X, "abc", 4) => error: .substring: part 4 to 3 is outside the 3 characters
+.substring(X, "abc", 2, 1) => error: .substring: part 2 to 1 is outside the 3 characters
+.substring(X, "abc", 0, 9) => error: .substring: part 0 to 9 is outside the 3 characters
+
+.replace("a-b-c", "-", "+", X) => "a+b+c"
+.replace("a1b22", "[0-9]+", "#", X) => "a#b#"
+.replace(f(x), "x", "y", X) => "f(y)"
+.replace("a", "a", "b", "a") => no
+.replace("a", "[", "b", X) => error: .replace: invalid regular expression '[': unterminated character set at position 0
+.replace("a", a, "b", X) => wrong: the second argument of .replace must be a string, not a
+.replace("a", "a", 1, X) => wrong: the third argument of .replace must be a string, not 1
+.upper_case("aBé1", X) => "ABÉ1"
+.lower_case("AbC", X) => "abc"
+.upper_case(f(a), X) => "F(A)"
+.lower_case("A", "A") => no
+
+.term2string(b([1,"s"]), X) => "b([1,"s"])"
+.term2string("s", X) => ""s""
+.term2string(b, "b") => yes
+.term2string(b, "c") => no
+.term2string(b, b) => error: .term2string: the second argument must be a string, not b
+.term2string(X, "10") => 10
+.term2string(X, b) => b
+.term2string(Y, "f(5)") & .type(Y, X) => literal f(5) | structure f(5) | ground f(5)
+.term2string(Y, "not a ( term") & .type(Y, X) => atom not a ( term | literal not a ( term | ground not a ( term
+
+.time(X, Y, Z) => 22 15 23
+.time(W, X, Y, Z) => 22 15 23 456
+.time(22, 15, X) => 23
+.time(0, X, Y) => no
+.date(X, Y, Z) => 2023 11 14
+.date(2023, 11, 14) => yes
+.date(2023, 11, 15) => no
+.nano_time(1) => no
+.nano_time(X) & .type(X, number) => 1700000123456000000
+
+.random([], X) => no
+.random([], X, 0) => no
+.random([a], X, 3) => a | a | a
+.random(1) => wrong: .random expects a list or a variable, and a variable after a list, not 1
+.random(a) => wrong: .random expects a list or a variable, and a variable after a list, not a
+.random(X, a) => wrong: the number of answers of .random must be a number, not a
+.random([a], b) => wrong: .random expects a list or a variable, and a variable after a list, not b
+.random([a], X, n) => wrong: the number of answers of .random must be a number, not n
+.random([a]) => wrong: .random expects a list or a variable, and a variable after a list, not 1
+.set_random_seed("x") => wrong: the argument of .set_random_seed must be a number, not "x"
+
+.my_name(X) => tester
+.my_name(carl) => no
+.all_names(X) => [tester,friend]
+.verbose(loud) => wrong: the argument of .verbose must be a number, not loud
+.verbose(-1) => wrong: the argument of .verbose must be 0, 1 or 2, not -1
+.verbose(3) => wrong: the argument of .verbose must be 0, 1 or 2, not 3
+"""
+A_MOMENT = 1_700_000_123.456  # 2023-11-14 22:15:23.456 UTC
 
 
-def annotated(value: object, *annotations: Term) -> Term:
-    return Annotated(term(value), annotations)
+@calls(TERMS)
+def test_what_actions_on_terms_answer(formula, wanted):
+    host = mind("")
+    host.time = A_MOMENT
+    assert answers(formula, host) == wanted
 
 
-def source(name: str, *nested: Term) -> Term:
-    told = structure("source", atom(name))
-    return Annotated(told, nested) if nested else told
-
-
-def test_copies_have_new_variables_and_a_ground_term_is_its_copy(mind):
-    first, second, copy = Var("A"), Var("B"), Var("C")
-    for action in (".copy_term", ".rename_apart"):
-        assert mind.succeeds(action, ("f", first, second, first, 1), copy)
-        third = Var("Z")
-        assert mind.unify(copy, term(("f", "x", "y", third, 1)))
-        assert text(third) == "x"
-        assert text(first) == "A"
-        assert text(second) == "B"
-        copy = Var("D")
-    assert mind.result(".copy_term", ("f", 1)) == "f(1)"
-    assert not mind.succeeds(".copy_term", ("f", 1), ("f", 2))
-
-
-def test_add_annot_adds_to_literals_and_lists(mind):
-    assert mind.result(".add_annot", "a", source("jomi")) == "a[source(jomi)]"
-    assert mind.result(".add_annot", annotated("a", atom("z")), "b") == "a[b,z]"
-    assert mind.result(".add_annot", annotated("a", atom("b")), "b") == "a[b]"
-    assert not mind.succeeds(".add_annot", "a", source("jomi"), "b")
-    pattern = Annotated(atom("a"), (), Var("T"))
-    assert mind.result(".add_annot", pattern, "b") == "a[b|T]"
-    assert mind.result(".add_annot", ["a", ("f", 1), [("g", 2)]], "x") == "[a[x],f(1)[x],[g(2)[x]]]"
-    assert mind.result(".add_annot", [1, Var("X")], "x") == "[1,X]"
-    assert not mind.succeeds(".add_annot", "a", "b", "a")
-    assert mind.succeeds(".add_annot", "a", "b", annotated("a", atom("b"), atom("c")))
-
-
-def test_add_nested_source_puts_the_old_sources_inside(mind):
-    assert mind.result(".add_nested_source", ("p", 1), "pluto") == "p(1)[source(pluto)]"
-    told = annotated(("p", 1), source("venus"))
-    assert mind.result(".add_nested_source", told, "pluto") == "p(1)[source(pluto)[source(venus)]]"
-    twice = annotated("p", source("a", source("b")), atom("t"))
-    assert mind.result(".add_nested_source", twice, "c") == "p[source(c)[source(a)[source(b)]],t]"
-    assert (
-        mind.result(".add_nested_source", ["a", 1, [("b", 2)]], "c") == "[a[source(c)],1,[b(2)[source(c)]]]"
-    )
-
-
-def test_remove_source_annot_takes_sources_away(mind):
-    told = annotated("p", source("a"), source("b", source("c")), atom("t"))
-    assert mind.result(".remove_source_annot", told) == "p[t]"
-    assert mind.result(".remove_source_annot", annotated("p", source("a"))) == "p"
-    assert mind.result(".remove_source_annot", "p") == "p"
-    assert mind.result(".remove_source_annot", [annotated("p", source("a")), 1]) == "[p,1]"
-    body = make_body([])
-    for label, kept in ((atom("l"), "@l "), (NO_LABEL, "")):
-        plan = (PLAN, annotated(label, source("bob")), trigger("+!", atom("g")), TRUE, body)
-        assert mind.result(".remove_source_annot", plan) == f"{{ {kept}+!g }}"
-
-
-ATOM = term("a")
-NEGATED = functor("a", 0, negated=True)
-ELSEWHERE = atom("a", namespace="ns")
-ANNOTATED = Annotated(atom("a"), (atom("b"),))
-STRUCTURE = term(("f", 1))
-NEGATED_STRUCTURE = (functor("f", 1, negated=True), 1.0)
-LIST = term([1])
-SUM = (functor("+", 2, kind=ARITHMETIC), Var("X"), 1.0)
-CALL = (functor(".print", 1, kind=ACTION), atom("a"))
-BODY = make_body([step("!", atom("g"))])
-CLAUSE = (RULE, atom("h"), atom("b"))
-
-EXAMPLES: list[tuple[Term, str]] = [
-    (1.0, "number ground"),
-    (SUM, "number"),
-    (ATOM, "atom literal ground"),
-    (ELSEWHERE, "atom literal ground"),
-    (NEGATED, "literal structure ground"),
-    (ANNOTATED, "literal structure ground"),
-    (STRUCTURE, "literal structure ground"),
-    (NEGATED_STRUCTURE, "literal structure ground"),
-    (term(("f", Var("X"))), "literal structure"),
-    (CALL, "literal structure ground"),
-    (String("s"), "string ground"),
-    (LIST, "list structure ground"),
-    (term([]), "list structure ground"),
-    (make_list([1.0], Var("T")), "list structure"),
-    (SetValue(), "set ground"),
-    (MapValue(), "map ground"),
-    (QueueValue(), "queue ground"),
-    (CLAUSE, "literal structure rule ground"),
-    (BODY, "literal structure plan ground"),
-    (Var("X"), "free"),
-]
-
-
-@pytest.mark.parametrize(("value", "types"), EXAMPLES)
-def test_type_gives_every_type_in_order(mind, value, types):
-    kind = Var("T")
-    assert mind.instances(".type", value, kind, of=kind) == types.split()
-
-
-@pytest.mark.parametrize(("value", "types"), EXAMPLES)
+@calls("\n".join(line for line in TERMS.split("\n") if line.startswith(".type(") and ", X) =>" in line))
 @pytest.mark.parametrize("kind", ["number", "atom", "literal", "string", "list", "structure", "ground"])
-def test_each_type_has_its_test(mind, value, types, kind):
-    holds = kind in types.split()
-    assert mind.succeeds(f".{kind}", value) is holds
-    assert mind.succeeds(".type", value, kind) is holds
+def test_each_type_has_its_test(formula, wanted, kind):
+    tested = formula.removeprefix(".type(").removesuffix(", X)")
+    assert (answers(f".{kind}({tested})") != "no") is (kind in wanted.split())
 
 
-def test_the_empty_list_is_not_an_atom_and_internal_actions_are_calls(mind):
-    assert not mind.succeeds(".type", 1, "integer")
-    assert not mind.succeeds(".atom", [])
-    assert not mind.succeeds(".literal", [])
-    assert mind.succeeds(".internal_action", CALL)
-    assert not mind.succeeds(".internal_action", ("print", "a"))
-    assert not mind.succeeds(".internal_action", Var("X"))
+def test_random_numbers_are_drawn_one_by_one():
+    drawn = answers(".random(X, 5)").split(" | ")
+    assert len(set(drawn)) == 5
+    assert all(0 <= float(number) < 1 for number in drawn)
+    assert answers(".set_random_seed(7) & .random(X)") == answers(".set_random_seed(7) & .random(X)")
+    assert len(answers(".random([a,b], X, 3)").split(" | ")) == 3
 
 
-# .substring
-
-
-def test_substring_tests_for_a_part_and_a_given_place(mind):
-    assert mind.succeeds(".substring", String("b"), String("abc"))
-    assert not mind.succeeds(".substring", String("x"), String("abc"))
-    assert mind.succeeds(".substring", ("a", 10), ("b", "t1", ("a", 10)))
-    assert mind.succeeds(".substring", String(""), String(""))
-    assert mind.succeeds(".substring", String("a"), String("bab"), 1)
-    assert not mind.succeeds(".substring", String("a"), String("bab"), 0)
-    assert mind.succeeds(".substring", String("an"), String("banana"), 3, 4)
-
-
-def test_substring_gives_the_place_of_each_occurrence_and_cuts_out_a_part(mind):
-    first, last = Var("I"), Var("J")
-    assert mind.instances(".substring", String("a"), String("abbacca"), first, of=first) == ["0", "3", "6"]
-    assert mind.instances(".substring", ("a", 10), ("b", "t1", ("a", 10)), first, of=first) == ["5"]
-    assert mind.instances(
-        ".substring", String("an"), String("banana"), first, last, of=("p", first, last)
-    ) == ["p(1,2)", "p(3,4)"]
-    assert mind.instances(".substring", String("aa"), String("aaa"), first, of=first) == ["0", "1"]
-    assert mind.instances(".substring", String("x"), String("abc"), first, of=first) == []
-    assert mind.instances(".substring", String(""), String("ab"), first, of=first) == ["0", "1"]
-    part = Var("X")
-    assert mind.instances(".substring", part, String("hello world"), 6, of=part) == ['"world"']
-    assert mind.instances(".substring", part, String("hello world"), 0, 5, of=part) == ['"hello"']
-    assert mind.instances(".substring", part, ("a", 10, 20), 5, 7, of=part) == ['"20"']
-    assert mind.instances(".substring", part, String("ab"), 2, of=part) == ['""']
-    assert mind.instances(".substring", String("hello"), part, 1, 3, of=part) == ['"el"']
-
-
-@pytest.mark.parametrize("bounds", [(-1,), (4,), (2, 1), (0, 9)])
-def test_substring_refuses_positions_outside_of_the_text(mind, bounds):
-    with pytest.raises(ActionError, match="outside the 3 characters"):
-        mind.succeeds(".substring", Var("X"), String("abc"), *bounds)
-
-
-# .replace and the regular expressions of Java
-
-
-def test_replace_changes_every_match_and_letters_change_their_case(mind):
-    assert mind.result(".replace", String("a-b-c"), String("-"), String("+")) == '"a+b+c"'
-    assert mind.result(".replace", String("a1b22"), String("[0-9]+"), String("#")) == '"a#b#"'
-    assert mind.result(".replace", ("f", "x"), String("x"), String("y")) == '"f(y)"'
-    assert not mind.succeeds(".replace", String("a"), String("a"), String("b"), String("a"))
-    with pytest.raises(ActionError, match=r"\.replace"):
-        mind.succeeds(".replace", String("a"), String("["), String("b"), Var("R"))
-    assert mind.result(".upper_case", String("aBé1")) == '"ABÉ1"'
-    assert mind.result(".lower_case", String("AbC")) == '"abc"'
-    assert mind.result(".upper_case", ("f", "a")) == '"F(A)"'
-    assert not mind.succeeds(".lower_case", String("A"), String("A"))
-
-
-@pytest.mark.parametrize("arguments", [(String("a"), "a", String("b")), (String("a"), String("a"), 1)])
-def test_replace_needs_strings(mind, arguments):
-    with pytest.raises(WrongArguments):
-        mind.succeeds(".replace", *arguments, Var("R"))
+def test_verbose_and_version_are_known():
+    host = mind("")
+    assert answers(".verbose(2)", host) == "yes"
+    assert host.agent.options.verbose == 2
+    assert answers(".version(X)") == f'"{__version__}"'
+    assert STANDARD[".stopMAS"].suspends
 
 
 @pytest.mark.parametrize(
@@ -220,27 +187,3 @@ def test_matches_are_replaced(source, pattern, by, replaced):
 def test_invalid_expressions_are_refused(pattern, by):
     with pytest.raises(ValueError, match="'"):
         replace_all("a", pattern, by)
-
-
-# .upper_case .lower_case .term2string
-
-
-def test_term2string_writes_and_reads_terms(mind):
-    assert mind.result(".term2string", ("b", [1, String("s")])) == '"b([1,"s"])"'
-    assert mind.result(".term2string", String("s")) == '""s""'
-    assert mind.succeeds(".term2string", "b", String("b"))
-    assert not mind.succeeds(".term2string", "b", String("c"))
-    mind.readable = {"f(X)": structure("f", 5.0), "10": 10.0, "b": structure("b")}
-    read = Var("T")
-    assert mind.instances(".term2string", read, String("10"), of=read) == ["10"]
-    assert mind.succeeds(".term2string", read, String("f(X)"))
-    assert text(read) == "f(5)"
-    other = Var("U")
-    assert mind.succeeds(".term2string", other, "b")
-    assert text(other) == "b"
-    read = Var("T")
-    assert mind.succeeds(".term2string", read, String("not a ( term"))
-    assert mind.succeeds(".atom", read)
-    assert text(read) == "not a ( term"
-    with pytest.raises(ActionError):
-        mind.succeeds(".term2string", "b", "b")
