@@ -6,9 +6,9 @@ from collections.abc import Iterable, Sequence
 from math import comb
 from typing import NamedTuple
 
+from counting import Table
 from disturbances import faults_for
 from disturbed_runs import AGENTS, BASELINE, OVER_NAV2, PATIENT, Outcome
-from jacaros.look.metrics import Table
 from outcomes import AS_IF_DONE, ENDS, HUNG
 from scenarios import SCENARIOS
 

@@ -9,10 +9,9 @@ import change_requests
 import comparison
 import sizes
 import success
-from counting import Group
+from counting import Group, ProgramMetrics, Table, as_markdown
 from disturbances import is_further
 from disturbed_runs import AGENTS, BASELINE, OVER_NAV2, PATIENT, Outcome
-from jacaros.look.metrics import ProgramMetrics, Table, as_markdown
 from scenarios import FOLDER, SCENARIOS
 from workshop.published import size_table
 

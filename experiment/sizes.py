@@ -3,8 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from counting import Group, measure, measure_chart
-from jacaros.look.metrics import MEASURES, ProgramMetrics, Table
+from counting import MEASURES, Group, ProgramMetrics, Table, measure_beside, measure_chart
 from jacaros.runtime.files.yaml import plain_values
 from scenarios import FOLDER, SCENARIOS
 
@@ -16,7 +15,7 @@ OURS, THEIRS = ("agents", "artifacts", "total", "baseline"), ("total", "python")
 
 def examples() -> list[ProgramMetrics]:
     """The five examples, beside their baselines."""
-    return measure(
+    return measure_beside(
         [each.project.parent for each in SCENARIOS.values()], [[each.baseline] for each in SCENARIOS.values()]
     )
 
@@ -24,7 +23,7 @@ def examples() -> list[ProgramMetrics]:
 def over_nav2() -> list[ProgramMetrics]:
     """The agents that drive by Nav2's actions, beside the same baselines."""
     folders = sorted(each.parent for each in (FOLDER / "agents").glob("*/*.jcm"))
-    return measure(folders, [[SCENARIOS[folder.name].baseline] for folder in folders])
+    return measure_beside(folders, [[SCENARIOS[folder.name].baseline] for folder in folders])
 
 
 def size_table(programs: Sequence[ProgramMetrics], kind: str) -> Table:

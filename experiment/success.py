@@ -4,9 +4,9 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from statistics import median
 
+from counting import Table
 from disturbances import FURTHER_KINDS, KINDS, held_out
 from disturbed_runs import SIDES, Outcome
-from jacaros.look.metrics import Table
 from outcomes import ENDS
 from scenarios import FURTHER_SCENARIOS, SCENARIOS
 

@@ -1,8 +1,25 @@
-"""Counts programs of agents, each beside a baseline: a Python program without agents that does the same.
+"""Counts the source code of programs of agents: identifiers, lines and compressed bytes, also of baselines without agents.
 
-Both are counted by the rules in docs/reference/metrics.md.
+docs/reference/metrics.md has the rules. ``python experiment/counting FOLDER...`` prints the counts.
 """
 
-from counting.baselines import Group, measure, measure_chart
+from counting.baselines import measure_beside
+from counting.charts import measure_chart
+from counting.counts import MEASURES, CountedFile, Counts, Group, ProgramMetrics, counts_of
+from counting.programs import MetricsError, measure
+from counting.tables import Table, as_markdown
 
-__all__ = ["Group", "measure", "measure_chart"]
+__all__ = [
+    "MEASURES",
+    "CountedFile",
+    "Counts",
+    "Group",
+    "MetricsError",
+    "ProgramMetrics",
+    "Table",
+    "as_markdown",
+    "counts_of",
+    "measure",
+    "measure_beside",
+    "measure_chart",
+]

@@ -1,34 +1,16 @@
-"""Programs of agents with their baselines: the files of both, and charts of both."""
+"""Programs of agents with their baselines: the files of both."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from enum import StrEnum
 from pathlib import Path
 
-from jacaros.look import metrics
-from jacaros.look.metrics import CountedFile, ProgramMetrics
-from jacaros.look.metrics.programs import DEFAULT, Library, check_counted
-from jacaros.look.metrics.sources import PythonFile, Sources
+from counting.counts import CountedFile, Group, ProgramMetrics
+from counting.programs import DEFAULT, Files, Library, check_counted, measure
+from counting.sources import PythonFile, Sources
 from jacaros.runtime.files.texts import is_file
 
 
-class Group(StrEnum):
-    """The role of source files: the groups of a program of agents, and those of its baseline."""
-
-    AGENTS = metrics.Group.AGENTS
-    ARTIFACTS = metrics.Group.ARTIFACTS
-    PROJECTS = metrics.Group.PROJECTS
-    WORLDS = metrics.Group.WORLDS
-    LIBRARY = metrics.Group.LIBRARY
-
-    BASELINE = "baseline"
-    """Python files of a program without agents and with the same behaviour."""
-
-    BASELINE_LIBRARY = "baseline_library"
-    """Library code that the baseline uses: of py_trees."""
-
-
-def measure(folders: Sequence[Path], baselines: Sequence[Iterable[Path]]) -> list[ProgramMetrics]:
+def measure_beside(folders: Sequence[Path], baselines: Sequence[Iterable[Path]]) -> list[ProgramMetrics]:
     """Count the programs in folders, each with its baseline; the total leaves the baseline out.
 
     Args:
@@ -41,7 +23,7 @@ def measure(folders: Sequence[Path], baselines: Sequence[Iterable[Path]]) -> lis
     """
     sources = Sources()
     library = Library(sources, DEFAULT)
-    programs = metrics.measure(folders)
+    programs = measure(folders)
     beside = [_baseline(paths, sources, library) for paths in baselines]
     check_counted(sources, library)
     return [
@@ -50,19 +32,7 @@ def measure(folders: Sequence[Path], baselines: Sequence[Iterable[Path]]) -> lis
     ]
 
 
-def measure_chart(programs: Sequence[ProgramMetrics], measure: str) -> str:
-    """Return the chart of one measure as SVG: for each program, artifacts on top of agents, next to the baseline.
-
-    Args:
-        programs: the categories.
-        measure: one of `MEASURES`.
-    """
-    return metrics.measure_chart(programs, measure, [Group.BASELINE])
-
-
-def _baseline(
-    paths: Iterable[Path], sources: Sources, library: Library
-) -> dict[str, tuple[CountedFile, ...]]:
+def _baseline(paths: Iterable[Path], sources: Sources, library: Library) -> Files:
     """Return the files of a baseline by group, after reporting their errors."""
     found: dict[Path, CountedFile] = {}
     modules: set[str] = set()

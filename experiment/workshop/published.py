@@ -1,12 +1,12 @@
 """Sizes of the solutions of the workshop's problems: ours, counted now, and published ones, from ``published.yaml``.
 
-``python published.py`` prints them as a table in Markdown.
+``python -m workshop.published`` prints them as a table in Markdown.
 """
 
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-from jacaros.look.metrics import CountedFile, Group, Table, as_markdown, counts_of, measure
+from counting import CountedFile, Group, Table, as_markdown, counts_of, measure
 from jacaros.runtime.files.yaml import plain_values
 
 FOLDER: Final = Path(__file__).parent

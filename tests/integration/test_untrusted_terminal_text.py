@@ -39,7 +39,6 @@ RUNS: dict[str, list[list[str]]] = {
     "check": [["check", "a.asl"], ["check", "w.yaml"], ["check", "m.yaml"], ["check", EVIL]],
     "describe": [["describe", "a.asl"], ["describe", "a.asl", "--json"], ["describe", "m.yaml"]],
     "fmt": [["fmt", "--check", "a.asl"], ["fmt", "broken.asl"]],
-    "metrics": [["metrics", "."], ["metrics", EVIL]],
     "view": [
         ["view", "r.jsonl", "--output", f"{EVIL}/r.html"],
         ["view", "damaged.jsonl", "--output", "x.html"],

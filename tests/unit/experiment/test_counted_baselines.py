@@ -1,17 +1,11 @@
 """The files of baselines that the experiment counts, and the chart of both sides."""
 
-import sys
 from pathlib import Path
 
 import py_trees
 import pytest
 
-from jacaros.look.metrics import MetricsError, ProgramMetrics
-from jacaros.look.metrics import measure as measure_alone
-
-sys.path.insert(0, str(Path(__file__).parents[3] / "experiment"))
-
-from counting import Group, measure, measure_chart
+from counting import Group, MetricsError, ProgramMetrics, measure, measure_beside, measure_chart
 
 BASELINE = {
     "patrol.py": "import rclpy\nimport steps\nfrom py_trees.common import Status\n\nmain = 1\n",
@@ -38,16 +32,16 @@ def files(program: ProgramMetrics, group: Group, root: Path) -> list[str]:
 
 
 def test_a_baseline_is_a_file_with_what_it_imports(agent: Path) -> None:
-    (program,) = measure([agent], [[agent.parent / "patrol.py"]])
+    (program,) = measure_beside([agent], [[agent.parent / "patrol.py"]])
     imported = ["far.py", "inner/__init__.py", "inner/deep.py", "patrol.py", "steps.py"]
     assert files(program, Group.BASELINE, agent.parent) == imported
-    (alone,) = measure_alone([agent])
+    (alone,) = measure([agent])
     assert program.total == alone.total, "the total leaves the baseline out"
     assert program.counts(Group.AGENTS) == alone.counts("agents")
 
 
 def test_libraries_of_a_baseline_are_counted_separately(agent: Path) -> None:
-    (program,) = measure([agent], [[agent.parent / "patrol.py"]])
+    (program,) = measure_beside([agent], [[agent.parent / "patrol.py"]])
     found = files(program, Group.BASELINE_LIBRARY, Path(py_trees.__file__).resolve().parent)
     assert {"__init__.py", "common.py", "composites.py"} <= set(found)
 
@@ -55,16 +49,16 @@ def test_libraries_of_a_baseline_are_counted_separately(agent: Path) -> None:
 def test_wrong_and_missing_baselines_are_reported_in_one_pass(agent: Path) -> None:
     (agent.parent / "wrong.py").write_text("x = \n")
     with pytest.raises(MetricsError) as wrong:
-        measure([agent], [[agent.parent / "wrong.py"], [agent.parent / "none.py"]])
+        measure_beside([agent], [[agent.parent / "wrong.py"], [agent.parent / "none.py"]])
     assert [each.message for each in wrong.value.diagnostics] == [
         "not Python: invalid syntax",
         f"file not found: {agent.parent}/none.py",
     ]
     with pytest.raises(ValueError, match="zip"):
-        measure([agent, agent], [[agent.parent / "other.py"]])
+        measure_beside([agent, agent], [[agent.parent / "other.py"]])
 
 
 def test_the_chart_has_a_bar_for_the_baseline_beside_that_of_the_agents(agent: Path) -> None:
-    svg = measure_chart(measure([agent], [[agent.parent / "patrol.py"]]), "lines")
+    svg = measure_chart(measure_beside([agent], [[agent.parent / "patrol.py"]]), "lines")
     assert "<title>agent, agents: 2</title>" in svg
     assert "<title>agent, baseline: 9</title>" in svg

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from jacaros.look.metrics import MEASURES
+from counting import MEASURES
 from jacaros.runtime.files.yaml import plain_values
 
 FILE = Path(__file__).parents[3] / "experiment" / "thesis.yaml"

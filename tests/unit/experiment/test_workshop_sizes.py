@@ -1,30 +1,16 @@
 """Sizes of solutions of the workshop's problems: ours are counted, those of others have their source."""
 
-import importlib.util
 import re
-from functools import cache
-from pathlib import Path
-from types import ModuleType
 
-FOLDER = Path(__file__).parents[3] / "experiment" / "workshop"
-
-
-@cache
-def published() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("published", FOLDER / "published.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+from workshop import published
 
 
 def test_ours_are_counted_once_for_each_setting_and_once_for_all() -> None:
-    ours = {row.part: row for row in published().our_rows()}
-    assert list(ours) == [*published().SETTINGS, published().SHARED]
-    for setting in published().SETTINGS:
+    ours = {row.part: row for row in published.our_rows()}
+    assert list(ours) == [*published.SETTINGS, published.SHARED]
+    for setting in published.SETTINGS:
         assert ours[setting].files == (f"{setting}/robot.asl",)
-        text = (FOLDER / setting / "robot.asl").read_text(encoding="utf-8")
+        text = (published.FOLDER / setting / "robot.asl").read_text(encoding="utf-8")
         assert ours[setting].lines == len(text.splitlines())
         # One comment line; blank lines are between the parts.
         assert ours[setting].code_lines == sum(bool(line) for line in text.splitlines()) - 1
@@ -32,7 +18,7 @@ def test_ours_are_counted_once_for_each_setting_and_once_for_all() -> None:
 
 
 def test_those_of_others_have_a_source_at_a_commit_and_fewer_code_lines_than_lines() -> None:
-    rows = published().published_rows()
+    rows = published.published_rows()
     assert {row.system for row in rows} == {"Python", "BehaviorTree.CPP", "ros_bt_py", "FlexBE", "SkiROS2"}
     for row in rows:
         assert re.fullmatch(r"[\w-]+/[\w-]+, commit [0-9a-f]{40}, \S+", row.source)
@@ -46,7 +32,7 @@ def test_those_of_others_have_a_source_at_a_commit_and_fewer_code_lines_than_lin
 
 
 def test_the_table_has_all_systems_and_their_totals() -> None:
-    table = published().size_table()
+    table = published.size_table()
     assert [row[0] for row in table.rows][:2] == ["JaCaROS", "Python"]
     tree = next(row for row in table.rows if row[0] == "BehaviorTree.CPP")
     assert tree[1:7] == ("18 / 16", "28 / 25", "48 / 44", "178 / 161", "609 / 447", "881 / 693")

@@ -47,7 +47,6 @@ COMMANDS = {
     "guard": ("jacaros.runtime.cli.guard", "Stop the robot when its agents no longer can."),
     "ros": ("jacaros.runtime.cli.ros", "Inspect a live ROS graph, and write mapping files for it."),
     "describe": ("jacaros.runtime.cli.describe", "Describe an artifact type, a mapping file or a project."),
-    "metrics": ("jacaros.runtime.cli.metrics", "Count identifiers, lines and compressed bytes of programs."),
     "version": ("jacaros.runtime.cli.main:version", "Print the versions of jacaros and its dependencies."),
 }
 """Module and summary of each command; after a colon, its name in the module if that is not ``command``."""

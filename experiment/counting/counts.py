@@ -143,6 +143,12 @@ class Group(StrEnum):
     LIBRARY = "library"
     """Parts of the artifacts and plans of jacaros, and of other libraries, that the program uses."""
 
+    BASELINE = "baseline"
+    """Python files of a program without agents and with the same behaviour."""
+
+    BASELINE_LIBRARY = "baseline_library"
+    """Library code that the baseline uses: of py_trees."""
+
 
 @dataclass(frozen=True)
 class ProgramMetrics:
@@ -150,13 +156,13 @@ class ProgramMetrics:
 
     Attributes:
         name: name of its folder.
-        files: files by `Group`, sorted by path; groups without files may be missing, and others may be added.
+        files: files by `Group`, sorted by path; groups without files may be missing.
     """
 
     name: str
-    files: Mapping[str, tuple[CountedFile, ...]]
+    files: Mapping[Group, tuple[CountedFile, ...]]
 
-    def counts(self, group: str) -> Counts:
+    def counts(self, group: Group) -> Counts:
         """Return the counts of one group."""
         return counts_of(self.files.get(group, ()))
 

@@ -3,7 +3,7 @@
 import gzip
 from pathlib import Path
 
-from jacaros.look.metrics import Counts, Group, ProgramMetrics, measure
+from counting import Counts, Group, ProgramMetrics, measure
 
 AGENT = """\
 // A robot that waters plants.

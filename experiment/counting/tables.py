@@ -1,10 +1,12 @@
-"""Tables of counts: one per measure, as tables 8.1 to 8.3 of the thesis; or of all files."""
+"""Tables of counts: one per measure, as tables 8.1 to 8.3 of the thesis, or of all groups, or of all files."""
 
+import csv
+import io
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final
 
-from jacaros.look.metrics.counting import MEASURES, Counts, Group, ProgramMetrics
+from counting.counts import MEASURES, Counts, Group, ProgramMetrics
 
 TableCell = str | int
 
@@ -19,15 +21,6 @@ class Table:
     title: str
     header: tuple[str, ...]
     rows: tuple[tuple[TableCell, ...], ...]
-
-    def with_column(self, name: str, cells: Sequence[TableCell]) -> "Table":
-        """Return the table with another column at the right.
-
-        Raises:
-            ValueError: the number of cells differs from the number of rows.
-        """
-        rows = tuple((*row, cell) for row, cell in zip(self.rows, cells, strict=True))
-        return replace(self, header=(*self.header, name), rows=rows)
 
 
 def measure_table(programs: Sequence[ProgramMetrics], measure: str) -> Table:
@@ -44,6 +37,18 @@ def measure_table(programs: Sequence[ProgramMetrics], measure: str) -> Table:
     return Table(MEASURES[measure], ("program", *_COLUMNS), rows)
 
 
+def group_table(programs: Sequence[ProgramMetrics]) -> Table:
+    """Return the table of all measures: a row for each non-empty group of each program, and for its total."""
+    columns = ("files", *MEASURES)
+    rows = tuple(
+        (program.name, str(column), *(getattr(counts, each) for each in columns))
+        for program in programs
+        for column in _COLUMNS
+        if (counts := _counts(program, column)).files
+    )
+    return Table("Groups", ("program", "group", *columns), rows)
+
+
 def file_table(programs: Sequence[ProgramMetrics]) -> Table:
     """Return the table of all files: a row for each file of each program."""
     rows = tuple(
@@ -56,7 +61,7 @@ def file_table(programs: Sequence[ProgramMetrics]) -> Table:
 
 
 def _counts(program: ProgramMetrics, column: str) -> Counts:
-    return program.total if column == _TOTAL else program.counts(column)
+    return program.total if column == _TOTAL else program.counts(Group(column))
 
 
 def as_text(table: Table) -> str:
@@ -85,3 +90,12 @@ def as_markdown(table: Table) -> str:
     rule = ["---:" if right else "---" for right in _numeric(table)]
     lines = [table.header, rule, *(tuple(map(str, row)) for row in table.rows)]
     return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines)
+
+
+def as_csv(table: Table) -> str:
+    """Return the table as CSV with a header line; lines end with a line feed."""
+    written = io.StringIO()
+    writer = csv.writer(written, lineterminator="\n")
+    writer.writerow(table.header)
+    writer.writerows(table.rows)
+    return written.getvalue()

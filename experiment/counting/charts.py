@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from jacaros.look.metrics.counting import MEASURES, Group, ProgramMetrics
+from counting.counts import MEASURES, Group, ProgramMetrics
 
 _STYLE: Final = """
   text{fill:#23282e;font:12px system-ui,sans-serif} .title{font-weight:600;font-size:14px}
@@ -40,17 +40,19 @@ class Series:
     values: tuple[int, ...]
 
 
-def measure_chart(programs: Sequence[ProgramMetrics], measure: str, beside: Sequence[str] = ()) -> str:
-    """Return the chart of one measure as SVG: for each program, artifacts on top of agents.
+def measure_chart(programs: Sequence[ProgramMetrics], measure: str) -> str:
+    """Return the chart of one measure as SVG: artifacts on top of agents, next to the baseline if there is one.
 
     Args:
         programs: the categories.
         measure: one of `MEASURES`.
-        beside: other groups of the programs; each has a bar next to that of the agents.
     """
+    groups: list[tuple[Group, ...]] = [(Group.AGENTS, Group.ARTIFACTS)]
+    if any(Group.BASELINE in each.files for each in programs):
+        groups.append((Group.BASELINE,))
     stacks = [
         [Series(group, tuple(getattr(each.counts(group), measure) for each in programs)) for group in stack]
-        for stack in ((Group.AGENTS, Group.ARTIFACTS), *((each,) for each in beside))
+        for stack in groups
     ]
     return bar_chart(MEASURES[measure], [each.name for each in programs], stacks)
 

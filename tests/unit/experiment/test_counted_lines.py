@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
+from counting import CountedFile, Group, MetricsError, measure
+from counting.sources import agentspeak_comments
 from jacaros.agents.language.diagnostics import SourceFile
 from jacaros.agents.language.loader import read_program
 from jacaros.agents.language.nodes import Program
-from jacaros.look.metrics import CountedFile, Group, MetricsError, measure
-from jacaros.look.metrics.sources import agentspeak_comments
 
 
 def counted(folder: Path, name: str, text: str) -> CountedFile:
@@ -183,7 +183,7 @@ def test_physical_lines_follow_the_rule_of_the_thesis(tmp_path: Path, lines: int
     assert program.total.lines == lines + 2
 
 
-EXAMPLES = Path(__file__).parents[4] / "examples"
+EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
 def plain_count(text: str) -> tuple[int, int]:

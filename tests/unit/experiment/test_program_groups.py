@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import jacaros
-from jacaros.look.metrics import Group, MetricsError, ProgramMetrics, measure
+from counting import Group, MetricsError, ProgramMetrics, measure
 
 PACKAGE = Path(jacaros.__file__).parent
 

@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Final
 
 import jacaros
+from counting import sources as languages
+from counting.counts import CountedFile, Group, ProgramMetrics
+from counting.sources import PythonFile, Sources, counted
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic, SourceError, SourceFile
 from jacaros.agents.language.loader import read_program
-from jacaros.look.metrics import sources as languages
-from jacaros.look.metrics.counting import CountedFile, Group, ProgramMetrics
-from jacaros.look.metrics.sources import PythonFile, Sources, counted
 from jacaros.robots.mapping.file import SHIPPED, find_mapping, is_mapping, read_with_problems
 from jacaros.robots.registry import type_finder
 from jacaros.robots.world.files.faults import fault_file_problems, is_fault_file
@@ -42,7 +42,7 @@ _SHIPPED: Final = "$jacaros/"
 _TEST_FOLDERS: Final = frozenset({"test", "tests"})
 _TEST_MODULES: Final = ("jacaros.testing", "pytest", "unittest")
 
-Files = dict[str, tuple[CountedFile, ...]]
+Files = dict[Group, tuple[CountedFile, ...]]
 
 
 class MetricsError(SourceError):

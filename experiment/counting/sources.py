@@ -12,11 +12,11 @@ from typing import Any, Final, NamedTuple
 
 from ruamel.yaml import YAML
 
+from counting.counts import CountedFile, Stretch
 from jacaros.agents.checks.formulas import conditions
 from jacaros.agents.language import lexer, nodes
 from jacaros.agents.language.diagnostics import AslError, Diagnostic, SourceFile, Span
 from jacaros.agents.language.nodes import parts_of, walk
-from jacaros.look.metrics.counting import CountedFile, Stretch
 from jacaros.robots.mapping.file import MappingFile
 from jacaros.runtime.files.texts import file_bytes
 from jacaros.runtime.mas.agents.programs import text_of
