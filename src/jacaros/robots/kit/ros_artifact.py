@@ -182,21 +182,16 @@ class RosArtifact(Artifact):
     def matching_of(
         self,
         publisher: Publisher,
-        timeout: float | None = None,
-        unmatched: str | None = None,
         warn: Callable[[str, str], None] | None = None,
     ) -> Matching:
         """Prepare operations to wait for subscribers of *publisher*; see `matched` for the simple way.
 
         Args:
             publisher: made by `publisher`.
-            timeout: seconds; None: the option ``match_timeout``.
-            unmatched: ``warn`` or ``fail``; None: the option ``unmatched``.
             warn: called with the warning and the help; None: they are logged, once each time the topic loses its last
                 subscriber.
         """
-        found = timeout if timeout is not None else self.option("match_timeout", MATCH_TIMEOUT)
-        fails = (unmatched or self.option("unmatched", "")) == "fail"
+        timeout, fails = self.option("match_timeout", MATCH_TIMEOUT), self.option("unmatched", "") == "fail"
         guarded = guarded_by(self.ros)
 
         def missed(topic: str, seconds: float, again: bool) -> None:
@@ -218,7 +213,7 @@ class RosArtifact(Artifact):
 
         return Matching(
             publisher,
-            found if Capability.DISCOVERY in self.ros.capabilities else 0.0,
+            timeout if Capability.DISCOVERY in self.ros.capabilities else 0.0,
             missed,
             lambda count: guarded.covered(publisher.topic, count),
         )

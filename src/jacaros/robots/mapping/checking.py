@@ -60,20 +60,12 @@ def known(written: Written, needed: str, interfaces: Interfaces, problems: list[
 def check_topic(topic: TopicPart, type_name: str, interfaces: Interfaces, problems: list[Problem]) -> None:
     """Check a property or signal against a type."""
     extractor(topic, type_name, interfaces, problems)
-    if topic.initial is not None or topic.policy.dead_band:
-        _check_counts(topic, type_name, interfaces, problems)
-
-
-def _check_counts(topic: TopicPart, type_name: str, interfaces: Interfaces, problems: list[Problem]) -> None:
-    if topic.fields is not None:
-        return  # the reader has reported it
-    count = len(interfaces.fields(type_name))
-    band = topic.policy.dead_band
-    for what, given in (("initial", topic.initial), ("dead_band", band if isinstance(band, tuple) else None)):
-        if given is not None and len(given) != count:
-            problems.append(
-                topic.place.problem(f"`{what}` has {len(given)} values, but {type_name} has {count} fields")
-            )
+    band, count = topic.policy.dead_band, len(interfaces.fields(type_name))
+    if (
+        topic.fields is None and isinstance(band, tuple) and len(band) != count
+    ):  # else the reader has reported it
+        text = f"`dead_band` has {len(band)} values, but {type_name} has {count} fields"
+        problems.append(topic.place.problem(text))
 
 
 def _check_operation(
@@ -101,7 +93,7 @@ class Codec:
 
     Attributes:
         fill: builds the message, request or goal.
-        end: builds the last message of repeated publishing; None: no last message.
+        end: builds the message that stops a robot; None: this is not a velocity.
         outputs: read the output parameters from the response or result.
         succeeded: returns whether an answer shows success.
     """
@@ -130,10 +122,10 @@ def codec(
     """
     before, types = len(problems), message_types(part.kind, type_name)
     values = fitting(part, types[0], interfaces)
-    fill, at_end = builder(values, types[0], interfaces, problems, adapt), part.at_end
-    if at_end is None and fill is not None and types[0] in VELOCITIES:  # a robot always ends with zero
-        at_end = tuple(each for each in values if ".header" in each.target.steps)
-    end = None if at_end is None else builder(at_end, types[0], interfaces, problems, adapt)
+    fill, end = builder(values, types[0], interfaces, problems, adapt), None
+    if fill is not None and types[0] in VELOCITIES:  # a robot always ends with zero
+        stamps = [each for each in values if ".header" in each.target.steps]
+        end = builder(stamps, types[0], interfaces, problems, adapt)
     if not types[1:]:
         return Codec(fill, end) if fill is not None and len(problems) == before else None
 

@@ -266,20 +266,16 @@ class _Decoder:
 
     def _named(self) -> Convert:
         owner, last = owner_of(self._field.path, self._root, self._interfaces)
-        known, prefix = constants(self._interfaces, owner), self._conversion.prefix
-        meant = chosen(known, last, prefix)
+        meant = chosen(constants(self._interfaces, owner), last)
         if not meant:
-            begin = f" with the prefix `{prefix}`" if prefix else ""
-            listed = ", ".join(known) or "none"
-            text = f"{owner} has no constant{begin}"
-            raise WrongPath(text, f"its constants: {listed}; or write names: {{0: ...}}")
+            raise WrongPath(f"{owner} has no constant", "write names: {0: ...}")
         names: dict[object, Atom] = {}
         for name, value in meant.items():
             plain = octet(value)
             if plain in names:
                 raise WrongPath(
                     f"{owner}: the constants `{names[plain]}` and `{name}` have the same value {plain}",
-                    f"write prefix: ... with the common prefix of the constants of `{last}`, or names: {{{plain}: {name}}}",
+                    f"write names: {{{plain}: {name}}}",
                 )
             names[plain] = Atom(name)
         return lambda raw: names.get(value := octet(raw), value)
@@ -386,13 +382,6 @@ def converted(conversion: Conversion) -> Convert:
         return found if isinstance(found, Atom) else number(found)
 
     return named
-
-
-def perceived(value: object) -> object:
-    """Return a constant of a mapping file as agents perceive it: lower-case words are atoms."""
-    if isinstance(value, list):
-        return [perceived(each) for each in value]
-    return Atom(value) if isinstance(value, str) and value.isidentifier() and value[0].islower() else value
 
 
 def _in_turn(steps: list[Convert]) -> Convert:

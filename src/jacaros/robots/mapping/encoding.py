@@ -226,7 +226,7 @@ class _Encoder:
                 lambda value: {axis: math.sin(_number(value) / 2), "w": math.cos(_number(value) / 2)}
             )
         if conversion.kind == "name":
-            meant = chosen(constants(interfaces, self._owner), self._last, conversion.prefix)
+            meant = chosen(constants(interfaces, self._owner), self._last)
             if not meant:
                 told = f"{self._owner} has no constants for `{self._last}`"
                 raise WrongPath(told, "write names: {0: ...}")

@@ -163,10 +163,10 @@ def each_of(node: YamlNode) -> list[YamlNode]:
 ANGLES = ("yaw", "pitch", "roll")
 LISTS = ("count", "min", "max", "mean")
 KINDS = (*ANGLES, "name", "atom", "object", *LISTS)
-CONVERSION = ("as", "prefix", "names", "unit", "message_unit", "scale", "offset")
+CONVERSION = ("as", "names", "unit", "scale", "offset")
 DOWN = "down"
 """Value of ``round: down``, the next lower integer, so that a battery at 99.7 % does not count as full."""
-FIELD = ("path", *CONVERSION, "sample", "round", "least", "otherwise", "dead_band", "name")
+FIELD = ("path", *CONVERSION, "sample", "round", "least", "otherwise", "name")
 
 
 @dataclass(frozen=True, slots=True)
@@ -263,10 +263,8 @@ class Conversion:
     Attributes:
         kind: ``yaw``, ``pitch``, ``roll``, ``name``, ``atom``, ``object``, ``count``, ``min``, ``max``, ``mean`` or
             "".
-        prefix: prefix of the constants for ``name``.
         names: atoms for values.
         unit: the agent's unit, for the manual; empty if none is given.
-        knows_message_unit: whether the mapping gives the unit of the message.
         line: the linear conversion of units, scale and offset; None if the number stays unchanged.
         digits: decimals; None: all.
         floor: integers, rounded down instead of to the nearest.
@@ -274,12 +272,10 @@ class Conversion:
     """
 
     kind: str = ""
-    prefix: str = ""
     names: tuple[tuple[object, str], ...] = ()
     line: LinearConversion | None = None
     digits: int | None = None
     unit: str = ""
-    knows_message_unit: bool = False
     floor: bool = False
     least: float | None = None
 
@@ -316,7 +312,6 @@ class FieldPart:
     Attributes:
         shares: positions in a list at which values are sampled, 0 to 1; None: not a sample.
         otherwise: replacement for numbers that are not finite; None: none.
-        dead_band: dead band of this value; None: that of the property.
         name: name for the manual.
     """
 
@@ -325,7 +320,6 @@ class FieldPart:
     conversion: Conversion = AS_IT_IS
     shares: Annotated[tuple[float, ...] | None, entry(_shares, "sample")] = None
     otherwise: Annotated[float | FieldPath | None, entry(_otherwise)] = None
-    dead_band: Annotated[float | None, entry(lambda node: node.number(0.0))] = None
     name: Annotated[str, entry(YamlNode.text)] = ""
 
     @property
@@ -390,16 +384,12 @@ def read_conversion(entries: dict[str, YamlNode]) -> Conversion:
     """Read the keys that fields of properties and values of operations share."""
     kind = entries["as"].choice(*KINDS) if "as" in entries else ""
     digits, unit = entries.get("round"), entries.get("unit")
-    if "prefix" in entries and kind != "name":
-        entries["prefix"].wrong("`prefix` needs `as: name`", "add `as: name`")
     return Conversion(
         kind,
-        entries["prefix"].text() if "prefix" in entries else "",
         _names(entries["names"]) if "names" in entries else (),
         _line(entries, kind),
         _digits(digits) if digits is not None else None,
         str(unit.value) if unit is not None and isinstance(unit.value, str) and unit.value in UNITS else "",
-        "message_unit" in entries,
         digits is not None and digits.value == DOWN,
         entries["least"].number() if "least" in entries else None,
     )
@@ -439,29 +429,14 @@ def _factor(node: YamlNode) -> float:
 
 
 def _units(entries: dict[str, YamlNode], kind: str) -> LinearConversion | None:
-    there, here = entries.get("unit"), entries.get("message_unit")
-    if there is None:
-        if here is not None:
-            here.wrong("`message_unit` needs `unit`", "write the agent's unit: unit: metres")
+    if "unit" not in entries or (wanted := _unit(entries["unit"])) is None:
         return None
-    wanted = _unit(there)
-    if wanted is None:
-        return None
-    given = units_of(UNITS[wanted].kind)[0] if here is None else _unit(here)
-    if given is None:
-        return None
-    asked, of_message = UNITS[wanted].kind, UNITS[given].kind
-    if asked != of_message:
-        (here or there).wrong(f"{given} is a unit of {of_message}, but {wanted} of {asked}", _of_kind(asked))
-        return None
+    asked = UNITS[wanted].kind
     if kind in ANGLES and asked != "angle":
-        there.wrong(f"`as: {kind}` makes an angle, but {wanted} is a unit of {asked}", _of_kind("angle"))
+        text = f"`as: {kind}` makes an angle, but {wanted} is a unit of {asked}"
+        entries["unit"].wrong(text, f"units of angle are {', '.join(units_of('angle'))}")
         return None
-    return conversion(given, wanted)
-
-
-def _of_kind(kind: str) -> str:
-    return f"units of {kind} are {', '.join(units_of(kind))}"
+    return conversion(units_of(asked)[0], wanted)
 
 
 def _unit(node: YamlNode) -> str | None:

@@ -66,9 +66,9 @@ class MappingHost(RosArtifact):
 
     # ---- properties
 
-    def reading_of(self, name: str, policy: ReadingPolicy, *initial: object) -> Reading:
+    def reading_of(self, name: str, policy: ReadingPolicy) -> Reading:
         """Return the reading of a property, also for operations that refresh it."""
-        made = self.readings[name] = self.reading(name, policy, *initial)
+        made = self.readings[name] = self.reading(name, policy)
         return made
 
     def annotate(self, name: str, notes: tuple[object, ...]) -> None:

@@ -106,20 +106,11 @@ def _can_have(field: FieldType, constant: object) -> bool:
     return field.base == "string" if isinstance(constant, str) else field.base in FLOATS
 
 
-def chosen(known: Mapping[str, object], field: str, prefix: str) -> dict[str, object]:
-    """Return the constants for a field, without their common prefix, in lower case.
-
-    These are the constants that begin with *prefix*, or else with the field's name, or else all.
-    """
-    for start in (prefix,) if prefix else (f"{field.upper()}_", ""):
-        found = {
-            name.removeprefix(start).lstrip("_").lower(): value
-            for name, value in known.items()
-            if name.startswith(start)
-        }
-        if found:
-            return found
-    return {}
+def chosen(known: Mapping[str, object], field: str) -> dict[str, object]:
+    """Return the constants for a field, in lower case: those that begin with its name, without it, or else all."""
+    start = f"{field.upper()}_"
+    own = {name.removeprefix(start).lower(): value for name, value in known.items() if name.startswith(start)}
+    return own or {name.lower(): value for name, value in known.items()}
 
 
 PARTS = ("_Request", "_Response", "_Goal", "_Result", "_Feedback")
@@ -298,7 +289,7 @@ def check_unit(conversion: Conversion, path: FieldPath, root: FieldType, interfa
     Raises:
         WrongPath: the message uses a unit of another kind.
     """
-    if not conversion.unit or conversion.knows_message_unit or conversion.kind in ANGLES:
+    if not conversion.unit or conversion.kind in ANGLES:
         return
     there = unit_at(path, root, interfaces)
     if there == conversion.unit:
@@ -306,7 +297,11 @@ def check_unit(conversion: Conversion, path: FieldPath, root: FieldType, interfa
     kinds, wanted = _kinds(there), UNITS[conversion.unit].kind
     if not there or wanted in kinds:
         return
-    listed = ", ".join(units_of(*kinds))
-    units = f"units of {' and '.join(sorted(kinds))} are {listed}; or" if kinds else "leave `unit` out, or"
-    text = f"messages have `{path.text}` in {there}, but {conversion.unit} is a unit of {wanted}"
-    raise WrongPath(text, f"{units} write the unit of the message: message_unit: ...")
+    help = (
+        f"units of {' and '.join(sorted(kinds))} are {', '.join(units_of(*kinds))}"
+        if kinds
+        else "leave `unit` out"
+    )
+    raise WrongPath(
+        f"messages have `{path.text}` in {there}, but {conversion.unit} is a unit of {wanted}", help
+    )

@@ -280,7 +280,7 @@ def _converted(
         return _names([name for _, name in conversion.names])
     if kind == "name":
         owner, last = owner_of(path, root, interfaces)
-        return _names(list(chosen(constants(interfaces, owner), last, conversion.prefix)))
+        return _names(list(chosen(constants(interfaces, owner), last)))
     if kind == "atom":
         return "atom"
     if kind == "count":

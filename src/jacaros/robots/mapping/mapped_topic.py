@@ -11,7 +11,7 @@ from typing import Any
 
 from jacaros.artifacts.env.values import Structure
 from jacaros.robots.kit.reading import BadMessages, Reading, Stamps
-from jacaros.robots.mapping.decoding import Extract, Unshowable, ValueRow, extractor, perceived
+from jacaros.robots.mapping.decoding import Extract, Unshowable, ValueRow, extractor
 from jacaros.robots.mapping.deriving import stamp_of
 from jacaros.robots.mapping.host import LOOK, MappingHost, type_in
 from jacaros.robots.mapping.properties import TopicPart
@@ -140,7 +140,7 @@ class Updater:
         elif part.each is not None:
             self._take_rows = Elements(host, part).take
         else:
-            self._reading = host.reading_of(part.name, part.policy, *map(perceived, part.initial or ()))
+            self._reading = host.reading_of(part.name, part.policy)
             self._take_rows = partial(self._show, self._reading)
 
     @property

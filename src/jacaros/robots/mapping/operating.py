@@ -168,9 +168,7 @@ class _PublishOperation(_Operation):
     def _connect(self, type_name: str) -> None:
         host, part = self._host, self._part
         self._publisher = host.publisher(part.target.text, type_name, part.qos or DEFAULT_QOS)
-        self._matching = host.matching_of(
-            self._publisher, part.match_timeout, part.unmatched, self._warn_unmatched
-        )
+        self._matching = host.matching_of(self._publisher, self._warn_unmatched)
         self._drives = type_name in VELOCITIES
         if self._drives:
             self._motions = motions_of(host.ros, host.robot_prefix)
@@ -188,8 +186,6 @@ class _PublishOperation(_Operation):
             if self._motions.stops != stops:
                 self._host.fail(f"`{self._part.name}` was aborted", "aborted", 0.0)
         self._send(inputs)
-        if self._part.at_end is not None:
-            self._end(inputs)
 
     def _pauses(self, inputs: Sequence[object]) -> Iterator[float]:
         """Yield pauses until messages arrive; a message that stops a robot does not wait."""

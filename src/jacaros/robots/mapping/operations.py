@@ -105,9 +105,6 @@ class OperationPart:
         success: None: a field ``success`` if there is one.
         any_success: success is not checked.
         duration: seconds of repeated publishing.
-        at_end: fields of the last message; None: zero for velocities, else no message.
-        match_timeout: seconds to wait for a subscriber before the first message; None: the artifact's option.
-        unmatched: ``warn`` or ``fail`` without a subscriber; None: the artifact's option.
         node: the node whose parameter is set; empty for our own.
         properties: properties that are refreshed.
         feedback: properties from the feedback.
@@ -131,9 +128,6 @@ class OperationPart:
     qos: QoS | None = None
     rate: float | None = None
     duration: ValuePart | None = None
-    at_end: tuple[ValuePart, ...] | None = None
-    match_timeout: float | None = None
-    unmatched: str | None = None
     timeout: float | None = None
     feedback: tuple[TopicPart, ...] = ()
     suspend: Literal["go_on", "cancel"] = "cancel"
@@ -290,7 +284,7 @@ def _typed(kind: str) -> ReadPart:
 def _outputs(node: YamlNode) -> tuple[FieldPart, ...]:
     fields = read_fields(node)
     for field in fields:
-        if field.path.of_message or "i" in field.path.steps or field.dead_band is not None:
+        if field.path.of_message or "i" in field.path.steps:
             node.problems.append(
                 field.place.problem("an output has only a path and a conversion", "leave the rest out")
             )
@@ -391,9 +385,6 @@ KEYS: dict[str, dict[str, ReadPart]] = {
         "qos": _into("qos", read_qos),
         "rate": _into("rate", positive),
         "duration": _duration,
-        "at_end": lambda node, part: {"at_end": read_values(node, part.parameters)},
-        "match_timeout": _into("match_timeout", positive),
-        "unmatched": _into("unmatched", lambda node: node.choice("warn", "fail")),
     },
     "service": {
         "service": _TARGET,
@@ -469,9 +460,8 @@ def _check_keys(part: OperationPart, entries: dict[str, YamlNode]) -> None:
 
 def _forgotten(part: OperationPart) -> Iterator[Problem]:
     """Yield constants with the name of a parameter that is not used."""
-    ends = () if part.at_end is None else part.at_end
     spell = () if part.duration is None else (part.duration,)
-    values = [*part.values, *(each for other in part.other_values for each in other), *ends, *spell]
+    values = [*part.values, *(each for other in part.other_values for each in other), *spell]
     used = {
         part.parameters[each.parameter]
         for each in values

@@ -103,7 +103,6 @@ class TopicPart:
         fields: None: the whole message.
         each: the array whose elements each have a property or signal.
         key: identifies an element; None: the first field.
-        initial: values before the first message; None: no property until then.
         when_changed: send a signal only if its values differ from the previous ones.
     """
 
@@ -120,14 +119,13 @@ class TopicPart:
     qos: Annotated[QoS | None, entry(read_qos)] = None
     description: Annotated[str, entry(YamlNode.text)] = ""
     policy: ReadingPolicy = ALWAYS
-    initial: tuple[object, ...] | None = None
     when_changed: Annotated[bool, entry(YamlNode.truth)] = False
     signal: bool = False
 
 
 _MESSAGE = ("topic", "type", "frame", "fields", "each", "key", "annotations", "qos", "description")
 _POLICY = ("mode", "rate", "dead_band", "latest_only", "expire")
-PROPERTY = (*_MESSAGE, *_POLICY, "initial")
+PROPERTY = (*_MESSAGE, *_POLICY)
 SIGNAL = (*_MESSAGE, "rate", "when_changed")
 FEEDBACK = ("fields", "annotations", "description", "rate", "dead_band", "latest_only")
 
@@ -140,8 +138,7 @@ def read_property(name: YamlNode, node: YamlNode) -> TopicPart:
     policy = read_policy(entries, part.fields)
     if policy.on_demand and part.each is not None:
         entries["mode"].wrong("a property for each element is always up to date", "leave `mode` out")
-    initial = _initial(entries["initial"], part) if "initial" in entries else None
-    return replace(part, policy=policy, initial=initial)
+    return replace(part, policy=policy)
 
 
 def read_signal(name: YamlNode, node: YamlNode) -> TopicPart:
@@ -204,16 +201,6 @@ def is_misplaced(name: YamlNode, node: YamlNode, keys: tuple[str, ...], what: st
     return True
 
 
-def _initial(node: YamlNode, part: TopicPart) -> tuple[object, ...]:
-    if part.each is not None:
-        node.wrong("a property for each element has no initial values", "leave `initial` out")
-    values = tuple(map(constant, each_of(node)))
-    if part.fields is not None and len(values) != (count := sum(field.count for field in part.fields)):
-        text = f"`initial` has {len(values)} values, but the property has {count}"
-        node.wrong(text, "write one for each value")
-    return values
-
-
 def read_policy(
     entries: dict[str, YamlNode], fields: tuple[FieldPart, ...] | None, latest_only: bool = True
 ) -> ReadingPolicy:
@@ -233,23 +220,15 @@ def read_policy(
 
 def _bands(node: YamlNode | None, fields: tuple[FieldPart, ...] | None) -> float | tuple[float, ...]:
     """Read one number for all values, or one for each value."""
-    own = any(field.dead_band is not None for field in fields or ())
     if node is None:
-        return _each_band(fields or (), 0.0) if own else 0.0
+        return 0.0
     if not isinstance(node.value, list):
-        band = node.number(0.0)
-        return _each_band(fields or (), band) if own else band
+        return node.number(0.0)
     given = tuple(item.number(0.0) for item in node.sequence())
     if fields is not None and len(given) != (count := sum(field.count for field in fields)):
         text = f"`dead_band` has {len(given)} numbers, but the property has {count} values"
         node.wrong(text, "write one number for all, or one for each value")
     return given
-
-
-def _each_band(fields: tuple[FieldPart, ...], usual: float) -> tuple[float, ...]:
-    return tuple(
-        usual if field.dead_band is None else field.dead_band for field in fields for _ in range(field.count)
-    )
 
 
 # Frames.

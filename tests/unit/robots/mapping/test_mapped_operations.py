@@ -150,32 +150,11 @@ async def test_a_missing_type_is_taken_from_the_subscriber(lab: Lab, artifact: A
     assert lab.last_command == (1.0, 0.0)
 
 
-HORN = """
-operations:
-  horn: {publish: horn, type: std_msgs/msg/Bool, fields: {data: true}, at_end: {data: false}, rate: 4, duration: 1}
-"""
-
-
-@made(mapped(HORN))
-async def test_a_last_message_of_ones_own(lab: Lab, artifact: ArtifactId) -> None:
-    heard = lab.hear("horn", "std_msgs/msg/Bool")
-    await lab.do(artifact, "horn")
-    await settle()
-    assert [each.data for each in heard] == [True] * 4 + [False]
-
-
 # ---- waiting for a subscriber
 
 SAY = """
 operations:
   say: {parameters: [text], publish: speech, type: std_msgs/msg/String, fields: {data: $text}}
-  must_say:
-    parameters: [text]
-    publish: speech
-    type: std_msgs/msg/String
-    fields: {data: $text}
-    match_timeout: 1
-    unmatched: fail
 """
 
 
@@ -201,22 +180,14 @@ async def test_a_message_without_subscribers_is_delayed_and_warned_about_once(
     assert "m.yaml:3:38: no subscriber on topic /speech after 3 s; publishing anyway" in lab.logged[0]
 
 
-@made(mapped(SAY), on_graph=True)
-async def test_a_message_without_subscribers_fails_if_the_mapping_requires_it(
+@made(mapped(SAY), Structure("match_timeout", (0.5,)), Structure("unmatched", (Atom("fail"),)), on_graph=True)
+async def test_a_message_without_subscribers_fails_if_an_option_requires_it(
     lab: Lab, artifact: ArtifactId
 ) -> None:
     for _ in range(2):
-        assert (await lab.call(artifact, "must_say", "first")).reason == 'unmatched("/speech")'
-    assert lab.clock.elapsed == pytest.approx(1.0)
-    assert lab.logged == []
-
-
-@made(mapped(SAY), Structure("match_timeout", (0.5,)), Structure("unmatched", (Atom("fail"),)), on_graph=True)
-async def test_settings_missing_in_the_mapping_are_options_of_the_artifact(
-    lab: Lab, artifact: ArtifactId
-) -> None:
-    assert (await lab.call(artifact, "say", "first")).reason == 'unmatched("/speech")'
+        assert (await lab.call(artifact, "say", "first")).reason == 'unmatched("/speech")'
     assert lab.clock.elapsed == pytest.approx(0.5)
+    assert lab.logged == []
 
 
 @made(mapped(DRIVE), on_graph=True)

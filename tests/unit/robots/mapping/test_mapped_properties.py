@@ -76,13 +76,6 @@ async def test_a_property_is_there_from_the_first_message_on(
     assert t.values() == [(x,) for x in shown]
 
 
-async def test_initial_values(lab: Lab) -> None:
-    t = await talk(lab, points("initial: [0]"))
-    assert t.held == [(0,)]
-    await t.points(1)
-    assert t.held == [(1,)]
-
-
 async def test_on_demand_values_are_shown_by_operations_only_which_fail_without_a_message(lab: Lab) -> None:
     text = points("mode: on_demand") + "\noperations: {look: {refresh: a}}"
     t = await talk(lab, text)

@@ -57,7 +57,7 @@ def test_qos_is_a_profile_or_its_parts(written: str, qos: QoS) -> None:
 
 
 def test_policies_of_a_property() -> None:
-    text = "  a: {topic: a, fields: [x, {path: y, dead_band: 2}], rate: 5, dead_band: 1, expire: 3, latest_only: false}"
+    text = "  a: {topic: a, fields: [x, y], rate: 5, dead_band: [1, 2], expire: 3, latest_only: false}"
     [part] = properties(text).artifacts["m"].properties
     policy = part.policy
     assert (policy.rate, policy.dead_band, policy.expire, policy.latest_only) == (5.0, (1.0, 2.0), 3.0, False)
@@ -131,8 +131,6 @@ properties: {a: {topic: t, fields: ['pose..x']}}
 properties: {a: {topic: t, fields: {path: x, unit: meters}}}
   1:52: unknown unit 'meters' | did you mean `metres`? Units: radians, degrees, metres, centimetres, millimetres,
   metres_per_second, kilometres_per_hour, seconds, milliseconds, minutes, celsius, kelvin, share, percent
-properties: {a: {topic: t, fields: {path: x, unit: metres, message_unit: celsius}}}
-  1:74: celsius is a unit of temperature, but metres of length | units of length are metres, centimetres, millimetres
 properties: {a: {topic: t, fields: {path: q, as: yaw, unit: percent}}}
   1:61: `as: yaw` makes an angle, but percent is a unit of share | units of angle are radians, degrees
 properties: {a: {topic: t, fields: {path: q, as: jaw}}}
@@ -143,8 +141,6 @@ properties: {a: {topic: t, fields: {path: x, sample: [0, 2]}}}
   1:58: item 2 of 'sample' is 2, but must lie between 0 and 1 |
 properties: {a: {topic: t, fields: [x, y], dead_band: [1]}}
   1:55: `dead_band` has 1 numbers, but the property has 2 values | write one number for all, or one for each value
-properties: {a: {topic: t, fields: [x, y], initial: [1]}}
-  1:53: `initial` has 1 values, but the property has 2 | write one for each value
 properties: {a: {topic: t, mode: lazy}}
   1:34: 'mode' is 'lazy' | choose one of: verbose, on_demand
 properties: {a: {topic: t, mode: on_demand}}
@@ -173,7 +169,7 @@ operations: {go: {publish: t, service: s}}
   refresh
 operations: {go: {publish: t, request: {}}}
   1:31: 'go' has no key 'request' | known keys: publish, parameters, description, uses, expect, meanwhile, type, fields,
-  qos, rate, duration, at_end
+  qos, rate, duration
 operations: {go: {service: s, expect: {within: 2, else: late}}}
   1:39: 'expect' names no property | write a property with its values: docked: [true]
 operations: {go: {service: s, expect: {docked: true}}}

@@ -200,7 +200,7 @@ def _single(
         conversion = "unit: degrees" if unit in ("rad", "rad/s") else ""
         return GivenValue(path, word, conversion, _shown(unit))
     if kind.base in INTEGER_RANGES and name in constants_by_field(types, type_name):
-        named = chosen(constants(types, type_name), name, "")
+        named = chosen(constants(types, type_name), name)
         if len(set(named.values())) == len(named):  # otherwise two constants name the same value
             limits = ", ".join(list(named)[:_FEW]) + ", ..." * (len(named) > _FEW)
             return GivenValue(path, word, "as: name", limits=limits)
