@@ -15,7 +15,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from typing import Any, NamedTuple, Protocol, TextIO
+from typing import IO, Any, NamedTuple, TextIO
 
 from jacaros.runtime.files.texts import is_worth_a_line, visible
 
@@ -59,21 +59,11 @@ def _similar(error: UnicodeError) -> tuple[str | bytes, int]:
 codecs.register_error(PLAIN, _similar)
 
 
-class TextStream(Protocol):
-    """The required methods of a text stream; a binary file is accepted, too."""
-
-    def write(self, text: Any, /) -> Any:
-        """Write *text*."""
-
-    def flush(self) -> Any:
-        """Pass on written text."""
-
-
 class Output:
     """A sink of text. `write` raises no error and waits at most `patience` seconds; it may be called in any thread.
 
     Args:
-        stream: the text stream, or a function that returns the present one; None stands for a closed one.
+        stream: the stream, or a function that returns the present one; None stands for a closed one.
         name: its name in warnings.
         warn: called with a warning of one line, without ``warning:``; None for no warnings.
         patience: seconds that `write` waits if the queue is full and the sink accepts nothing; then lines are dropped until
@@ -87,7 +77,7 @@ class Output:
 
     def __init__(
         self,
-        stream: TextStream | Callable[[], TextStream | None] | None,
+        stream: IO[Any] | Callable[[], IO[Any] | None] | None,
         name: str,
         warn: Callable[[str], None] | None = None,
         patience: float = PATIENCE,
@@ -100,7 +90,7 @@ class Output:
         self.when_gone: Callable[[], object] | None = None
         # Reentrant: a signal handler may log in the middle of a write.
         self._changed = threading.Condition(threading.RLock())
-        self._stream: TextStream | None = None
+        self._stream: IO[Any] | None = None
         self._sink: _Sink | None = None
         self._queue: deque[bytes] = deque()
         self._waiting = 0
@@ -437,7 +427,7 @@ class _Sink(NamedTuple):
         return written or 0
 
 
-def _sink_of(stream: TextStream | None) -> _Sink | None:
+def _sink_of(stream: IO[Any] | None) -> _Sink | None:
     """Return the sink of a stream of the process; None for a stream made by other code, such as a test."""
     if type(stream) is io.FileIO:
         return _Sink(stream, "utf-8", PLAIN)

@@ -40,7 +40,7 @@ from jacaros.artifacts.env.ports import ENDED, OnOutcome, UnderWay, Workspace
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.presence.presence import (
     ANYWHERE,
-    ActivityCounter,
+    Activity,
     Direction,
     Filter,
     UnknownOperation,
@@ -535,7 +535,7 @@ class AgentBody(AgentPresence):
         environment: Environment,
         writer: PerceptWriter,
         show: Callable[[str], None],
-        activity: ActivityCounter,
+        activity: Activity,
     ) -> None:
         super().__init__(agent, mind, environment, writer, keys())
         self._mind = mind

@@ -9,7 +9,7 @@ import asyncio
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from jacaros.artifacts.env.environment import DEFAULT_TYPES, Environment
 from jacaros.artifacts.env.errors import (
@@ -666,20 +666,22 @@ identifies it, and the reason of a failure as text.
 """
 
 
-class ActivityCounter(Protocol):
-    """Counts what runs, so that a run can detect idleness.
+class Activity:
+    """Counts what will give an agent something to do, so that a run can detect idleness.
 
-    Attributes:
-        pending: the number.
+    Worlds, batteries and processes of artifacts do not count: they never end.
     """
 
-    pending: int
+    def __init__(self) -> None:
+        self.pending = 0
 
     def begin(self) -> None:
-        """Something with an end has begun."""
+        """Something has begun."""
+        self.pending += 1
 
     def end(self) -> None:
         """It has ended, or was cancelled."""
+        self.pending -= 1
 
 
 class Account:

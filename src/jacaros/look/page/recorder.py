@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from io import FileIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
 
@@ -33,6 +33,7 @@ from jacaros.runtime.errors import UsageError
 from jacaros.runtime.output import CLOSING, PATIENCE, Output
 
 if TYPE_CHECKING:
+    from jacaros.look.records.mcap_format import McapFile
     from jacaros.runtime.mas.embedding.mas import Mas
 
 MCAP = ".mcap"
@@ -44,18 +45,8 @@ _BATCH = 64
 """Maximum number of records packed together: more would save time, but cost memory."""
 
 
-class Format(Protocol):
-    """Converts records to bytes, as lines or as MCAP; one object for each file."""
-
-    def pack(self, records: Sequence[RecordingLine]) -> bytes:
-        """Return records as bytes, so that a file that ends after them is readable."""
-
-    def end(self) -> bytes:
-        """Return the last bytes of a file."""
-
-
-def format_of(path: Path) -> Callable[[], Format]:
-    """Return the format for a file name.
+def format_of(path: Path) -> "Callable[[], Lines | McapFile]":
+    """Return the class that converts the records of a file with this name to bytes; each file has an object of its own.
 
     Raises:
         UsageError: the library for the format is not installed.
@@ -196,7 +187,11 @@ class RecordingFile:
     """
 
     def __init__(
-        self, path: Path, make_format: Callable[[], Format], warn: Callable[[str], None] | None, limit: int
+        self,
+        path: Path,
+        make_format: "Callable[[], Lines | McapFile]",
+        warn: Callable[[str], None] | None,
+        limit: int,
     ) -> None:
         self._path, self._make_format, self._warn, self._limit = path, make_format, warn, limit
         self._batch = max(1, min(_BATCH, limit // 100_000))

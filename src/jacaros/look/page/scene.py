@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from math import isfinite
-from typing import Any, NamedTuple, Protocol, Self
+from typing import Any, NamedTuple, Self
 
 from jacaros.robots.world import World
 from jacaros.robots.world.data.ground_truth import RobotState
@@ -43,23 +43,6 @@ def _short(value: float) -> float:
     return round(value * 1e3) / 1e3 if isfinite(value) else value
 
 
-class Scene(Protocol):
-    """An observed world with robots: embedded, or on a real graph."""
-
-    def drawing(self) -> Mapping[str, Any] | None:
-        """The world, as `WorldDescription.drawing` describes it: the same object until something changes, None
-        while nothing is known."""
-
-    def robots(self) -> list[RobotView]:
-        """Return all robots in their current state; new robots are appended."""
-
-    def follow(self, moved: Callable[[], None]) -> bool:
-        """Call *moved* ten times per second while robots move; return False if their motion is not (yet) known."""
-
-    def close(self) -> None:
-        """Stop looking."""
-
-
 class EmbeddedScene:
     """The embedded world, with true poses.
 
@@ -73,7 +56,7 @@ class EmbeddedScene:
         self._stop_following: Callable[[], None] | None = None
 
     def drawing(self) -> Mapping[str, Any] | None:
-        """The world, which does not change; None without a world."""
+        """Return the world, which does not change, as `WorldDescription.drawing` describes it; None without one."""
         if self._drawing is None and (world := self._find()) is not None:
             self._drawing = world.description.drawing()
         return self._drawing
@@ -84,7 +67,7 @@ class EmbeddedScene:
         return views_of(world) if world is not None else []
 
     def follow(self, moved: Callable[[], None]) -> bool:
-        """Call *moved* when the world has recorded the poses of its robots; return False while there is no world."""
+        """Call *moved* ten times per second while robots move; return False while there is no world."""
         world = self._find()
         if world is not None and self._stop_following is None:
             self._stop_following = world.when_moved(moved)

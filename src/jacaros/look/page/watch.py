@@ -1,12 +1,15 @@
 """Samples a running world many times per second of the run's clock, for a recorder and views."""
 
 from collections.abc import Callable, Mapping
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
-from jacaros.look.page.scene import EmbeddedScene, RobotView, Scene
+from jacaros.look.page.scene import EmbeddedScene, RobotView
 from jacaros.runtime.clock import Clock, Timer
 from jacaros.runtime.mas.history.history import History
 from jacaros.runtime.mas.system import System
+
+if TYPE_CHECKING:
+    from jacaros.look.page.graph_scene import GraphScene
 
 PERIOD, LIVE_PERIOD = 0.3, 0.05
 """Seconds between two frames of a recording, and of a run in real time shown on a live page.
@@ -52,7 +55,7 @@ class Watch:
         self,
         clock: Clock,
         watchers: list[Watcher],
-        scene: Scene | None = None,
+        scene: "EmbeddedScene | GraphScene | None" = None,
         history: History | None = None,
         period: float = PERIOD,
     ) -> None:
@@ -148,7 +151,7 @@ def watch_of(mas: System, watchers: list[Watcher], live: bool = False) -> Watch:
     return Watch(mas.clock, watchers, _scene_of(mas), mas.history(), period)
 
 
-def _scene_of(mas: System) -> Scene:
+def _scene_of(mas: System) -> "EmbeddedScene | GraphScene":
     backend = mas.ros.joined
     if mas.ros.world is not None or backend is None or backend.name == "memory":
         return EmbeddedScene(lambda: mas.ros.world)

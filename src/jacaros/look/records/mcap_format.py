@@ -20,7 +20,7 @@ Packed = tuple[str, str, Any]
 
 
 class McapFile:
-    """A file of MCAP (see `jacaros.look.page.recorder.Format`).
+    """A file of MCAP (see `jacaros.look.page.recorder.RecordingFile`).
 
     Each kind of record has a channel ``/jacaros/KIND``, with JSON and a schema for it.  Robots are transforms, the world is
     a scene and what agents print is a log, as Foxglove shows them.  Messages of ROS keep their topics and types, as JSON.

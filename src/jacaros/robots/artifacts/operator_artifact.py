@@ -3,10 +3,9 @@
 import asyncio
 import json
 import re
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar
 
 from jacaros.artifacts.env.artifact import Out, internal_operation, operation
 from jacaros.artifacts.env.environment import write_line
@@ -25,13 +24,6 @@ PATIENCE = 300.0
 LINGER = 1.0
 """Seconds that the services of an answered question still reply: the response to the answer itself, and to late ones."""
 TEXT, TRIGGER = "std_msgs/msg/String", "std_srvs/srv/Trigger"
-
-
-class Lines(Protocol):
-    """The resource ``input``: lines that a person types, or that a pipe has."""
-
-    def next_line(self, callback: Callable[[str | None], None]) -> None:
-        """Call *callback* on the loop with the next line, None at the end of the input."""
 
 
 @dataclass(eq=False)

@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable, Mapping
 from functools import lru_cache
 from pathlib import Path as FilePath
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 from jacaros.robots.mapping.fields import (
     ALL,
@@ -24,22 +24,13 @@ from jacaros.robots.ros.errors import MessageMismatch, UnknownInterface
 from jacaros.robots.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 from jacaros.robots.ros.interfaces import BUILT_IN, installed
 from jacaros.robots.ros.message import TIMES
+from jacaros.robots.ros.node import Node
 from jacaros.robots.ros.typestore import DefinitionSchema, stored_types
 from jacaros.runtime.files.texts import suggestion
 from jacaros.runtime.files.yaml import Problem
 
 T = TypeVar("T")
 _CONSTANT = re.compile(r"[A-Z][A-Z0-9_]*")
-
-
-class Interfaces(Protocol):
-    """Describes and makes messages; every backend can."""
-
-    def fields(self, type_name: str) -> Mapping[str, FieldType]:
-        """Return the fields of a type, also of parts such as ``pkg/srv/Name_Request``. Raises `UnknownInterface`."""
-
-    def message(self, type_name: str, /, **fields: Any) -> Any:
-        """Make a message. Raises `UnknownInterface`, `MessageMismatch`."""
 
 
 class StoredInterfaces:
@@ -49,12 +40,16 @@ class StoredInterfaces:
         self._factory = DefinitionSchema((*folders, *installed()))
 
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
-        """Fields of a type."""
+        """Return the fields of a type, also of parts such as ``pkg/srv/Name_Request``. Raises `UnknownInterface`."""
         return self._factory.fields(type_name)
 
     def message(self, type_name: str, /, **fields: Any) -> Any:
-        """Make a message."""
+        """Make a message. Raises `UnknownInterface`, `MessageMismatch`."""
         return self._factory.make(type_name, fields)
+
+
+Interfaces = Node | StoredInterfaces
+"""What describes and makes messages."""
 
 
 @lru_cache(maxsize=8)

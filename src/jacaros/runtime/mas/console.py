@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Protocol, TextIO, TypeVar
 
-from jacaros.runtime.output import CLOSING, PATIENCE, Output, Printed, TextStream
+from jacaros.runtime.output import CLOSING, PATIENCE, Output, Printed
 
 L = TypeVar("L")
 
@@ -44,8 +44,8 @@ class StandardConsole:
     def __init__(
         self,
         level: str = "info",
-        output: TextStream | None = None,
-        errors: TextStream | None = None,
+        output: TextIO | None = None,
+        errors: TextIO | None = None,
         patience: float = PATIENCE,
     ) -> None:
         self._errors = Output(errors or (lambda: self._standard("stderr")), "standard error", None, patience)
@@ -76,8 +76,8 @@ class StandardConsole:
                         setattr(sys, name, self._streams[name])
                 self._printed, self._streams = {}, {}
 
-    def _standard(self, name: str) -> TextStream | None:
-        stream: TextStream | None = self._streams[name] if name in self._streams else getattr(sys, name)
+    def _standard(self, name: str) -> TextIO | None:
+        stream: TextIO | None = self._streams[name] if name in self._streams else getattr(sys, name)
         return stream
 
     def print(self, agent: str, text: str) -> None:

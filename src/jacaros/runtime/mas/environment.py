@@ -13,7 +13,7 @@ from jacaros.artifacts.env.ports import Workspace, ignore_made
 from jacaros.artifacts.env.values import Atom
 from jacaros.artifacts.kernel.acceptance import Unsuitable
 from jacaros.artifacts.kernel.declaration import Parameter
-from jacaros.artifacts.presence.presence import Account, Presence
+from jacaros.artifacts.presence.presence import Account, Activity, Presence
 from jacaros.runtime.clock import Clock
 from jacaros.runtime.files.python_modules import ModuleUnreadable, NotImported, ProjectModules
 from jacaros.runtime.files.texts import close_matches
@@ -28,7 +28,6 @@ from jacaros.runtime.mas.deployment import (
     WorkspaceSpec,
     has_own_artifacts,
 )
-from jacaros.runtime.mas.scheduler import Activity
 
 if TYPE_CHECKING:
     from jacaros.artifacts.env.artifact import Artifact

@@ -16,6 +16,7 @@ from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
 from jacaros.agents.mind.state.act import TimerHandle
+from jacaros.artifacts.presence.presence import Activity
 from jacaros.runtime.clock import Clock, real_time, run_context
 from jacaros.runtime.mas.console import entered
 
@@ -316,24 +317,6 @@ class Scheduler:
         if self._on_error is None:
             raise error
         self._on_error(error)
-
-
-class Activity:
-    """Counts what will give an agent something to do.
-
-    Worlds, batteries and processes of artifacts do not count: they never end.
-    """
-
-    def __init__(self) -> None:
-        self.pending = 0
-
-    def begin(self) -> None:
-        """Something has begun."""
-        self.pending += 1
-
-    def end(self) -> None:
-        """It has ended, or was cancelled."""
-        self.pending -= 1
 
 
 class AgentTimer:

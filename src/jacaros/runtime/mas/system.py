@@ -12,6 +12,7 @@ import jacaros.agents.mind.actions.standard  # noqa: F401 - fills the table of i
 from jacaros.agents.language.nodes import Program
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.state.act import Services
+from jacaros.artifacts.presence.presence import Activity
 from jacaros.runtime.clock import Clock, of_run
 from jacaros.runtime.files.python_modules import ProjectModules
 from jacaros.runtime.mas.agents.host import AgentHost
@@ -24,7 +25,7 @@ from jacaros.runtime.mas.directory import NAME as DIRECTORY_NAME
 from jacaros.runtime.mas.directory import Directory, Mailboxes, ServiceDirectory
 from jacaros.runtime.mas.options import RunOptions
 from jacaros.runtime.mas.ros_graph import RosGraph
-from jacaros.runtime.mas.scheduler import Activity, AgentTimer, Idleness, Scheduler
+from jacaros.runtime.mas.scheduler import AgentTimer, Idleness, Scheduler
 
 if TYPE_CHECKING:
     from jacaros.artifacts.env.environment import Environment

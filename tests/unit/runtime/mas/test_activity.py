@@ -1,7 +1,8 @@
 """Timers of agents."""
 
+from jacaros.artifacts.presence.presence import Activity
 from jacaros.runtime.clock import VirtualClock, run
-from jacaros.runtime.mas.scheduler import Activity, AgentTimer
+from jacaros.runtime.mas.scheduler import AgentTimer
 
 
 def test_a_timer_counts_until_it_fires_or_is_cancelled() -> None:

@@ -4,9 +4,10 @@ from jacaros.agents.mind.state.act import Act, Completion, Percept, SpeechAct
 from jacaros.agents.mind.state.budget import Options
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.values import Term, atom, functor
+from jacaros.artifacts.presence.presence import Activity
 from jacaros.runtime.clock import VirtualClock, run
 from jacaros.runtime.mas.agents.host import AgentHost
-from jacaros.runtime.mas.scheduler import Activity, Scheduler
+from jacaros.runtime.mas.scheduler import Scheduler
 
 
 class Mind:

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any, Protocol
 from jacaros.agents.language.nodes import Literal
 from jacaros.agents.mind.state.act import NEEDS, Act, AgentSystem, Completion, SpeechAct, TimerHandle
 from jacaros.agents.terms.values import String, atom, functor
+from jacaros.artifacts.presence.presence import Activity
 from jacaros.runtime.clock import Clock
 from jacaros.runtime.mas.console import RunConsole
-from jacaros.runtime.mas.scheduler import Activity, AgentTimer, Scheduler
+from jacaros.runtime.mas.scheduler import AgentTimer, Scheduler
 
 if TYPE_CHECKING:
     from jacaros.agents.body.body import AgentBody

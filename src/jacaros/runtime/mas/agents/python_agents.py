@@ -17,7 +17,7 @@ from jacaros.agents.python.agent import Literal, ReceivedMessage, literal_of, ov
 from jacaros.agents.python.python_agent import PythonAgent
 from jacaros.artifacts.env.errors import WorkspaceError
 from jacaros.artifacts.kernel.faults import error_text
-from jacaros.artifacts.presence.presence import OperationObserver
+from jacaros.artifacts.presence.presence import Activity, OperationObserver
 from jacaros.artifacts.presence.session import Session
 from jacaros.runtime.clock import Clock
 from jacaros.runtime.errors import JacarosError
@@ -30,7 +30,6 @@ from jacaros.runtime.mas.deployment import AgentSpec, ProjectError
 from jacaros.runtime.mas.directory import NAME as DIRECTORY_NAME
 from jacaros.runtime.mas.environment import OperationAccount, RunEnvironment
 from jacaros.runtime.mas.messaging import Messaging
-from jacaros.runtime.mas.scheduler import Activity
 
 
 class PythonAgentHost(AgentHost):

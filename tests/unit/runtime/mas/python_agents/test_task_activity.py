@@ -4,8 +4,8 @@ import asyncio
 from collections.abc import Coroutine
 from typing import Any
 
+from jacaros.artifacts.presence.presence import Activity
 from jacaros.runtime.mas.agents.python_agents import TaskActivity
-from jacaros.runtime.mas.scheduler import Activity
 
 
 class Stage:
