@@ -74,12 +74,10 @@ missing() {
   grep -q "jacaros\[$wanted\]" missing.log || { cat missing.log; fail "$* does not name the extra $wanted"; }
   if grep -q Traceback missing.log; then cat missing.log; fail "$* shows a traceback"; fi
 }
-missing mcap "$jacaros" run hello.asl --record hello.mcap
 missing rosbridge "$jacaros" run hello.asl --ros rosbridge --for 1
 missing maps "$jacaros" world show house --output house.png
 
-install "$wheel[behaviour-trees,maps,mcap,rosbridge]"
-"$jacaros" run hello.asl --record hello.mcap
+install "$wheel[behaviour-trees,maps,rosbridge]"
 "$jacaros" world show house --output house.png
 "$jacaros" run examples/07_shared_robot/shared_robot.jcm --clock fast --ground-truth truth.jsonl >shared_robot.log
 "$scratch/venv/bin/python" examples/07_shared_robot/check.py truth.jsonl | grep -q '^passed$'

@@ -22,45 +22,22 @@ from jacaros.look.records.records import (
     VERSION,
     EventLine,
     Frame,
-    MessageLine,
     RecordingLine,
     TextLine,
     WorldLine,
 )
-from jacaros.robots.ros.message import type_of
 from jacaros.robots.world.data.ground_truth import RobotState
-from jacaros.runtime.errors import UsageError
 from jacaros.runtime.output import CLOSING, PATIENCE, Output
 
 if TYPE_CHECKING:
-    from jacaros.look.records.mcap_format import McapFile
     from jacaros.runtime.mas.embedding.mas import Mas
 
-MCAP = ".mcap"
 LIMIT = 500_000_000
 """Default size limit of a recording, in bytes."""
 FLUSH = 0.2
 """Maximum seconds until a record is in the file, and is safe from a kill of the process."""
 _BATCH = 64
 """Maximum number of records packed together: more would save time, but cost memory."""
-
-
-def format_of(path: Path) -> "Callable[[], Lines | McapFile]":
-    """Return the class that converts the records of a file with this name to bytes; each file has an object of its own.
-
-    Raises:
-        UsageError: the library for the format is not installed.
-    """
-    if path.suffix == MCAP:
-        try:
-            from jacaros.look.records.mcap_format import McapFile
-        except ModuleNotFoundError as missing:
-            raise UsageError(
-                "error: mcap, which writes recordings of this kind, is not installed\n"
-                "  = help: pip install 'jacaros[mcap]', or --record RUN.jsonl"
-            ) from missing
-        return McapFile
-    return CompressedLines if path.suffix == ".gz" else Lines
 
 
 class Recorder:
@@ -76,12 +53,8 @@ class Recorder:
         limit: maximum size in bytes of the file and its older part together. A file of half that size becomes ``FILE.1``,
             replacing an older part, and a new one begins, with ``"part": 2``; `Recording.read` reads both.
 
-    Attributes:
-        takes_messages: whether ROS messages are recorded, too (`message`), which MCAP files support.
-
     Raises:
         OSError: the file cannot be opened.
-        UsageError: the library for its format is not installed.
     """
 
     def __init__(
@@ -92,12 +65,11 @@ class Recorder:
         limit: int = LIMIT,
     ) -> None:
         self.path = Path(path) if path is not None else None
-        self.takes_messages = self.path is not None and self.path.suffix == MCAP
         self.recording = Recording()
         self._keep = keep if keep is not None else path is None
         self._file: RecordingFile | None = None
         if self.path is not None:
-            self._file = RecordingFile(self.path, format_of(self.path), warn, limit)
+            self._file = RecordingFile(self.path, warn, limit)
         self._seen: tuple[RobotView, ...] | None = None
         self._last: tuple[RobotState, ...] | None = None
         self._rested: float | None = None
@@ -148,11 +120,6 @@ class Recorder:
             self.recording.events.append((t, kind, dict(data)))
         self._write(EventLine(t, kind, data))
 
-    def message(self, t: float, topic: str, message: Any) -> None:
-        """Record a ROS message that had an effect."""
-        if self.takes_messages:
-            self._write(MessageLine(round(t, 3), topic, type_of(message), message))
-
     def close(self) -> None:
         """Write the last frame and close the file; closing twice is harmless."""
         self._take_rest()
@@ -178,7 +145,6 @@ class RecordingFile:
 
     Args:
         path: output file.
-        make_format: creates the format of a file; called again for each further part.
         warn: takes a warning that the file cannot be written.
         limit: maximum size in bytes of the file and its older part together.
 
@@ -189,13 +155,13 @@ class RecordingFile:
     def __init__(
         self,
         path: Path,
-        make_format: "Callable[[], Lines | McapFile]",
         warn: Callable[[str], None] | None,
         limit: int,
     ) -> None:
-        self._path, self._make_format, self._warn, self._limit = path, make_format, warn, limit
+        self._path, self._warn, self._limit = path, warn, limit
+        self._make_format = CompressedLines if path.suffix == ".gz" else Lines
         self._batch = max(1, min(_BATCH, limit // 100_000))
-        self._format = make_format()
+        self._format = self._make_format()
         self._header = WorldLine(world={})
         self._part, self._size = 1, 0
         self._pending: deque[RecordingLine] = deque()

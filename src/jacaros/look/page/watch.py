@@ -20,10 +20,7 @@ REST = 1.0
 
 
 class Watcher(Protocol):
-    """Receives the records of a run: a `jacaros.look.page.recorder.Recorder` or a view.
-
-    One with a true attribute `takes_messages` has a method ``message``, too, which takes ROS messages that had an effect.
-    """
+    """Receives the records of a run: a `jacaros.look.page.recorder.Recorder` or a view."""
 
     def world(self, drawing: Mapping[str, Any]) -> None:
         """Receive the world, before everything else, and again when more of it is known."""
@@ -78,8 +75,6 @@ class Watch:
                 self.event(*happening)
             for watcher in self.watchers:
                 self._stop_listening.append(self._history.listen(watcher.event))
-                if getattr(watcher, "takes_messages", False):
-                    self._history.listen_to_messages(watcher.message)  # type: ignore[attr-defined]
             self._history.start()
 
     def _show_world(self, drawing: Mapping[str, Any]) -> None:

@@ -218,11 +218,6 @@ def older_part(path: Path) -> Path:
 
 def _lines(path: Path, warnings: list[str]) -> list[str]:
     data = file_bytes(path, LARGEST_RECORDING)
-    if data.startswith(b"\x89MCAP0"):
-        raise JacarosError(
-            f"error: a recording of MCAP is for other programs, such as Foxglove: {printable(str(path))}\n"
-            "  = help: `jacaros run FILE --record RUN.jsonl` makes one that jacaros reads"
-        )
     if data.startswith(MAGIC):
         largest = max(LARGEST, LARGEST_RATIO * len(data))
         data, broken = unpacked(data, largest + 1)

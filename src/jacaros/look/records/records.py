@@ -65,15 +65,6 @@ class EventLine(RecordingLine):
 AnyLine = WorldLine | Frame | TextLine | EventLine
 
 
-class MessageLine(RecordingLine):
-    """A ROS message that had an effect; only in files of MCAP."""
-
-    t: FiniteNumber
-    topic: str
-    type: str
-    message: Any
-
-
 # ---- data of events
 
 

@@ -15,7 +15,7 @@ RECORD_LIMIT = 500
 """Default size limit of a recording, in megabytes."""
 
 _BEGINNINGS = {
-    "recording": (b'{"kind": "', b"\x1f\x8b\x08", b"\x89mcap0"),
+    "recording": (b'{"kind": "', b"\x1f\x8b\x08"),
     "replay page": (b"<!doctype html>",),
     "ground truth": (b'{"kind": "',),
     "picture": (b"<svg",),

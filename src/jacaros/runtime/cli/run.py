@@ -99,7 +99,7 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 )
 @option(
     "--record FILE",
-    "Record the run to FILE: JSON lines, compressed (FILE.gz), or for Foxglove (FILE.mcap, needs jacaros[mcap]).",
+    "Record the run to FILE: JSON lines, compressed if it ends in .gz.",
     PATH,
 )
 @option(

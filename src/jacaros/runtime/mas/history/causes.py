@@ -86,7 +86,6 @@ class CauseRecords:
 
     Attributes:
         received, sent: the messages of our node by topic.
-        with_effect: takes messages that had an effect, when they are recorded: ``at``, topic and message.
     """
 
     def __init__(
@@ -100,7 +99,6 @@ class CauseRecords:
         self._beginning = beginning
         self.received: dict[str, Traffic] = {}
         self.sent: dict[str, Traffic] = {}
-        self.with_effect: Callable[[float, str, Any], None] | None = None
         self._last = 0
         # Two generations: the older one is dropped as a whole, at no cost per cause.
         self._young: dict[int, CauseLink] = {}
@@ -201,8 +199,6 @@ class CauseRecords:
             for field, value in _DETAILS[kind](what, about).items():
                 setattr(record, field, value)
         self._tell(record)
-        if self.with_effect is not None and kind in ("sample", "command") and about is not None:
-            self.with_effect(at, what, about)
 
     def _traffic(self, topic: str, message: Any) -> Traffic:
         traffic = self.received[topic] = Traffic(topic, False, message)

@@ -75,7 +75,6 @@ class History:
         self._kept = kept
         self._lasting: Lasting[Happening] = Lasting()
         self._listeners: list[RecordListener] = []
-        self._message_listeners: list[Callable[[float, str, Any], None]] = []
         self._ends = ExitStack()
         self._starts = 0
         self._agents: AgentRecords | None = None
@@ -84,17 +83,6 @@ class History:
         """Call *listener* with every record from now on. Return a function that ends this."""
         return entered(self._listeners, listener)
 
-    def listen_to_messages(self, listener: Callable[[float, str, Any], None]) -> None:
-        """Call *listener* with time, topic and ROS message of each message that has an effect.
-
-        Effects are, for example, a belief change that a plan handles, or a command of an operation.
-        """
-        self._message_listeners.append(listener)
-
-    def _hear_message(self, t: float, topic: str, message: Any) -> None:
-        for listener in self._message_listeners:
-            listener(t, topic, message)
-
     def start(self) -> None:
         """Begin to observe. Each `start` needs a `stop`, and the last `stop` ends the observation."""
         self._starts += 1
@@ -102,7 +90,6 @@ class History:
             return
         self.record(run_record(self._system))
         environment = RunEnvironmentRecords(self._system, self.beginning, self.record)
-        environment.causes.with_effect = self._hear_message
         environment.start(self._ends)
         self._agents = AgentRecords(self._system, environment.causes, self.t, self.record)
         self._agents.start(self._ends)
