@@ -32,16 +32,6 @@ def drive(run) -> Callable[..., RunResult]:
     return lambda program, **options: run(DRIVE + program, **options)
 
 
-def test_a_robot_drives_a_square_and_comes_back(drive) -> None:
-    result = drive("+!drive <- for (.range(I,1,4)) { moveForward(1); rotate(90); .print(I) }.")
-    assert result.of("driver") == ["1", "2", "3", "4"]
-    assert result.errors == []
-    pose = result.ground_truth.latest()
-    assert pose.x == pytest.approx(0, abs=0.05)
-    assert pose.y == pytest.approx(0, abs=0.05)
-    assert pose.odometer == pytest.approx(4, abs=0.1)
-
-
 def test_a_dropped_motion_stops_the_robot_immediately(drive) -> None:
     result = drive("""
         +!drive <- !!forward; .wait(2000); .drop_intention(forward); .wait(3000).
@@ -79,27 +69,6 @@ def test_the_same_seed_gives_the_same_path(drive) -> None:
     assert first.lines == second.lines
     assert first.seconds == second.seconds
     assert first.ground_truth.path() == second.ground_truth.path()
-
-
-def test_two_robots_are_driven_by_two_agents(tmp_path: Path) -> None:
-    (tmp_path / "pilot.asl").write_text("""
-        +!go(Robot) <- makeArtifact(Robot, "ArtCmdVelAndOdometry", [namespace(Robot)], M);
-                       moveForward(0.5)[artifact_id(M)]; .print(there); .broadcast(tell, there); !finish.
-        +!finish : there[source(_)] <- .stopMAS.
-        +!finish <- .wait({+there}); .stopMAS.
-        """)
-    project = tmp_path / "two.mas2j"
-    project.write_text("""
-        MAS two {
-            environment: jaca.CartagoEnvironment
-            agents: a pilot.asl [goals="go(robot_0)"]; b pilot.asl [goals="go(robot_1)"];
-        }
-        """)
-    result = run_project(project, world="two_robots", seconds=60)
-    assert result.of("a") == result.of("b") == ["there"]
-    truth = result.ground_truth
-    for robot in truth.robots:
-        assert truth.latest(robot).odometer == pytest.approx(0.5, abs=0.05)
 
 
 def test_a_program_without_robot_starts_no_world(run) -> None:

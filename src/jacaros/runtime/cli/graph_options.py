@@ -1,13 +1,12 @@
 """Options of commands that join a ROS graph: its address, and the names used in it."""
 
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Any
 
 import click
 
 from jacaros.robots.ros.middleware import ROS_KINDS
-from jacaros.runtime.cli.options import F, VariableOption, with_options
+from jacaros.runtime.cli.options import PATH, F, option, with_options
 from jacaros.runtime.cli.usage import usage_error
 
 
@@ -27,16 +26,8 @@ def ros_option(help: str, kinds: Sequence[str] = ROS_KINDS, required: bool = Fal
         kinds: kinds of graph that the command accepts.
         required: there is no default; otherwise the default is ``memory``.
     """
-    settings: dict[str, Any] = {"required": True} if required else {"default": "memory", "show_default": True}
-    return click.option(
-        "--ros",
-        cls=VariableOption,
-        type=RosKind(kinds),
-        envvar="JACAROS_ROS",
-        show_envvar=True,
-        help=help,
-        **settings,
-    )
+    settings: dict[str, Any] = {"required": True} if required else {"default": "memory"}
+    return option("--ros", help, RosKind(kinds), envvar="JACAROS_ROS", **settings)
 
 
 class NoiseFactor(click.FloatRange):
@@ -55,91 +46,53 @@ class NoiseFactor(click.FloatRange):
             ) from None
 
 
-noise_option = click.option(
-    "--noise",
-    type=NoiseFactor(0.0, 100.0),
-    metavar="FACTOR",
-    help="Factor for the noise of the embedded world's odometry and lasers: off (0), on (1, that of the world file, or "
+noise_option = option(
+    "--noise FACTOR",
+    "Factor for the noise of the embedded world's odometry and lasers: off (0), on (1, that of the world file, or "
     "that of slipping wheels if it has none) or a number (default: as in the world file; off if no world is named).",
+    NoiseFactor(0.0, 100.0),
 )
 
 
 def world_option(help: str) -> Callable[[F], F]:
     """Return the option ``--world``."""
-    return click.option(
-        "--world", cls=VariableOption, metavar="FILE", envvar="JACAROS_WORLD", show_envvar=True, help=help
-    )
+    return option("--world FILE", help, envvar="JACAROS_WORLD")
 
 
-faults_option = click.option(
-    "--faults",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="Fault file: what fails in the embedded world, and when.",
-)
-
+faults_option = option("--faults FILE", "Fault file: what fails in the embedded world, and when.", PATH)
 _ADDRESS = (
-    click.option(
-        "--domain-id",
-        type=int,
-        metavar="N",
-        help="Domain of the ROS 2 graph (default: ROS_DOMAIN_ID).",
-    ),
-    click.option(
-        "--master",
-        metavar="URI",
-        help="Master of the ROS 1 graph (default: ROS_MASTER_URI).",
-    ),
-    click.option(
-        "--bridge",
-        metavar="URL",
-        help="Address of a rosbridge server, such as ws://robot.lab.example:9090 (default: ROSBRIDGE_URI).",
+    option("--domain-id N", "Domain of the ROS 2 graph (default: ROS_DOMAIN_ID).", int),
+    option("--master URI", "Master of the ROS 1 graph (default: ROS_MASTER_URI)."),
+    option(
+        "--bridge URL",
+        "Address of a rosbridge server, such as ws://robot.lab.example:9090 (default: ROSBRIDGE_URI).",
     ),
 )
-_NAMESPACE = click.option("--namespace", default="", metavar="NAME", help="Prefix of relative ROS names.")
+_NAMESPACE = option("--namespace NAME", "Prefix of relative ROS names.", default="", show_default=False)
 _NAMES = (
-    click.option(
-        "--node-name", metavar="NAME", help="Name of the ROS node (default: the name of the agent system)."
-    ),
-    click.option(
-        "--remap",
-        multiple=True,
-        metavar="FROM:=TO",
-        help="Use the name TO for the topic, service or action FROM. Repeatable.",
-    ),
+    option("--node-name NAME", "Name of the ROS node (default: the name of the agent system)."),
+    option("--remap FROM:=TO...", "Use the name TO for the topic, service or action FROM. Repeatable."),
 )
-
-_PARAMETERS = (
-    click.option(
-        "--param",
-        multiple=True,
-        metavar="NAME:=VALUE",
-        help="Set a parameter declared by a mapping file or an artifact. Repeatable.",
-    ),
-    click.option(
-        "--params-file",
-        multiple=True,
-        type=click.Path(path_type=Path),
-        metavar="FILE",
-        help="ROS 2 parameter file for this node. Repeatable.",
-    ),
-)
-
-
 graph_options = with_options(*_ADDRESS, _NAMESPACE, *_NAMES)
 """The options for the address of a graph, the name of our node, and remappings."""
 address_options = with_options(*_ADDRESS, _NAMESPACE)
 """The options for the address of a graph and the namespace of our node."""
 world_options = with_options(*_ADDRESS, *_NAMES)
 """The same options as `graph_options` without the namespace: world files give each robot its own."""
-parameter_options = with_options(*_PARAMETERS)
+parameter_options = with_options(
+    option(
+        "--param NAME:=VALUE...", "Set a parameter declared by a mapping file or an artifact. Repeatable."
+    ),
+    option("--params-file FILE...", "ROS 2 parameter file for this node. Repeatable.", PATH),
+)
 """The options that set parameters of our node."""
-orphans_option = click.option(
+orphans_option = option(
     "--orphans",
-    type=click.Choice(["cancel", "keep"]),
+    "What to do with action goals that an earlier run of this node left behind, for example because it was killed: "
+    "cancel them (default), or keep them.",
+    click.Choice(["cancel", "keep"]),
     default="cancel",
-    help="What to do with action goals that an earlier run of this node left behind, for example because it was "
-    "killed: cancel them (default), or keep them.",
+    show_default=False,
 )
 
 

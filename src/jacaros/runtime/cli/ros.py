@@ -9,7 +9,7 @@ import click
 
 from jacaros.robots.ros.middleware import MIDDLEWARES
 from jacaros.runtime.cli.graph_options import address_options, ros_option, world_option
-from jacaros.runtime.cli.options import settled, with_options
+from jacaros.runtime.cli.options import PATH, option, settled, with_options
 from jacaros.runtime.cli.usage import examples, usage_error
 from jacaros.runtime.mas.options import RunOptions
 
@@ -23,13 +23,11 @@ _asking = with_options(
     ros_option("ROS graph to inspect: that of the embedded world (memory), or a real one."),
     world_option("World file, or the name of a shipped world; with --ros memory only."),
     address_options,
-    click.option(
-        "--timeout",
-        type=click.FloatRange(min=0.0, min_open=True),
+    option(
+        "--timeout S",
+        "Seconds to wait for nodes, replies and messages.",
+        click.FloatRange(min=0.0, min_open=True),
         default=5.0,
-        show_default=True,
-        metavar="S",
-        help="Seconds to wait for nodes, replies and messages.",
     ),
 )
 """Adds the options that select the graph."""
@@ -49,8 +47,8 @@ def command() -> None:
     epilog=examples("jacaros ros list --world house", "jacaros ros list --ros ros2 --rates"),
 )
 @_asking
-@click.option("--rates", is_flag=True, help="Listen for 2 seconds and print the rate of each topic, in Hz.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@option("--rates", "Listen for 2 seconds and print the rate of each topic, in Hz.")
+@option("--json", "Print JSON.", name="as_json")
 def list_command(rates: bool, as_json: bool, **graph: Any) -> None:
     """List the topics, actions, services and nodes of the graph with their types.
 
@@ -82,7 +80,7 @@ def list_command(rates: bool, as_json: bool, **graph: Any) -> None:
 )
 @click.argument("name")
 @_asking
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@option("--json", "Print JSON.", name="as_json")
 def show_command(name: str, as_json: bool, **graph: Any) -> None:
     """Show NAME: a topic, service, action or node of the graph, or a type such as nav_msgs/msg/Odometry.
 
@@ -115,14 +113,8 @@ def show_command(name: str, as_json: bool, **graph: Any) -> None:
     ),
 )
 @click.argument("names", nargs=-1, metavar="[TOPIC|SERVICE|ACTION]...")
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="File to write (default: standard output).",
-)
-@click.option("--force", is_flag=True, help="Overwrite an existing file.")
+@option("-o --output FILE", "File to write (default: standard output).", PATH)
+@option("--force", "Overwrite an existing file.")
 @_asking
 def map_command(names: tuple[str, ...], output: Path | None, force: bool, **graph: Any) -> None:
     """Write a mapping file for the named topics, services and actions; without names, for the usual ones of a robot.
@@ -171,15 +163,14 @@ def map_command(names: tuple[str, ...], output: Path | None, force: bool, **grap
         "jacaros ros check --base-timeout --ros ros2 --namespace robot_1",
     ),
 )
-@click.argument("file", type=click.Path(path_type=Path), required=False)
+@click.argument("file", type=PATH, required=False)
 @_asking
-@click.option(
+@option(
     "--base-timeout",
-    is_flag=True,
-    help="Drive the robot at 0.05 m/s for a second, send no more commands, and report when its base stops; at the end, "
+    "Drive the robot at 0.05 m/s for a second, send no more commands, and report when its base stops; at the end, "
     "stop the robot.",
 )
-@click.option("--yes", is_flag=True, help="Drive without asking whether the way is free.")
+@option("--yes", "Drive without asking whether the way is free.")
 def check_command(file: Path | None, base_timeout: bool, yes: bool, **graph: Any) -> int:
     """Check that the topics, servers, frames and parameters in the mapping FILE exist in the graph, with the same types.
 

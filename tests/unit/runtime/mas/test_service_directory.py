@@ -30,30 +30,6 @@ def services(delivered: Delivered) -> ServiceDirectory:
     return ServiceDirectory(make, delivered.deliver)
 
 
-HEARD = ("ann", 'provider(bob,"lift")')
-
-
-def test_a_subscriber_hears_of_present_and_of_later_providers(
-    services: ServiceDirectory, delivered: Delivered
-) -> None:
-    services.register("bob", "lift")
-    services.subscribe("ann", "lift")
-    assert delivered == [HEARD]
-    services.register("eve", "lift")
-    services.register("eve", "drive")
-    assert delivered[1:] == [("ann", 'provider(eve,"lift")')]
-    assert list(services.providers("lift")) == ["bob", "eve"]
-
-
-def test_an_agent_that_subscribes_twice_hears_of_each_provider_once(
-    services: ServiceDirectory, delivered: Delivered
-) -> None:
-    services.subscribe("ann", "lift")
-    services.subscribe("ann", "lift")
-    services.register("bob", "lift")
-    assert delivered == [HEARD]
-
-
 def test_copies_of_the_directory_hear_of_each_beginning_and_end(services: ServiceDirectory) -> None:
     changes: list[tuple[str, str, bool]] = []
     end = services.watch(lambda *change: changes.append(change))
