@@ -497,6 +497,7 @@ class ActionClient:
         self, message: Any, on_feedback: Callable[[Any], None] | None, deadline: Deadline
     ) -> GoalHandle:
         """Send a goal once; raise `ServerUnavailable` if there turns out to be no server."""
+        self._require_open()  # it may have been closed while another goal ended
         pending = GoalHandle(self, self.wire.new_id(), on_feedback)
         self._goals[pending.goal_id] = pending
         try:
@@ -516,13 +517,16 @@ class ActionClient:
             raise
         return pending
 
+    def _require_open(self) -> None:
+        if self._closed:
+            raise CallFailed(f"the client of action {self.name} was closed")
+
     def _nobody(self, deadline: Deadline) -> ServerUnavailable:
         return ServerUnavailable(f"no server offered {self._waiting.what} within {deadline.timeout:g} s")
 
     async def _server(self, deadline: Deadline) -> None:
         """Wait for the server."""
-        if self._closed:
-            raise CallFailed(f"the client of action {self.name} was closed")
+        self._require_open()
         if self.wire.offered:
             self._waiting.found()
             return

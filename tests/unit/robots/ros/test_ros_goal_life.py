@@ -321,6 +321,17 @@ class ClientLife(Life):
         return task.result() if ok else None
 
 
+def test_a_closed_client_does_not_send_a_goal_that_waited_for_another_to_end() -> None:
+    life = ClientLife()
+    life.give_up(life.send(None))
+    life.send(None)
+    life.close()
+    life.turn(0.0)
+    assert life.wire.sent == ["goal0"]
+    life.a_closed_client_is_not_busy()
+    life.teardown()
+
+
 TestServerLife = ServerLife.TestCase
 TestServerLife.settings = settings(max_examples=40, stateful_step_count=20)
 TestClientLife = ClientLife.TestCase
