@@ -123,7 +123,7 @@ def ask(node: Any, other: str) -> None:
 
     names = call(ListParameters, "list_parameters", ListParameters.Request()).result.names
     print("names", "lanes" in names, "use_sim_time" in names, flush=True)
-    print("put", put(6).successful, put(70).successful, put(3).reason, flush=True)
+    print("put", put(6).successful, put(70).successful, flush=True)
     values = call(GetParameters, "get_parameters", GetParameters.Request(names=["lanes"])).values
     print("got", values[0].integer_value, flush=True)
 

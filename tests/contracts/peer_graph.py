@@ -22,14 +22,8 @@ class GraphCommands:
 
     # Parameters
 
-    def declare(
-        self, name: str, default: Any, only_even: bool = False, node: str | None = None, **more: Any
-    ) -> Any:
-        def accept(value: Any) -> str | None:
-            return "it is odd" if value % 2 else None
-
-        declaration = DeclaredParameter(default, accept=accept if only_even else None, **more)
-        return self._backend.parameters(node).declare(name, declaration)
+    def declare(self, name: str, default: Any, node: str | None = None, **more: Any) -> Any:
+        return self._backend.parameters(node).declare(name, DeclaredParameter(default, **more))
 
     def withdraw(self, name: str, node: str | None = None) -> None:
         self._backend.parameters(node).withdraw(name)

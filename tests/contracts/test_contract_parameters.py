@@ -112,14 +112,10 @@ def test_a_declaration_is_taken_back(graph, left, right, name):
     with pytest.raises(CapabilityMissing, match="itself"):
         left.withdraw(name, node=right.node_name())
     left.declare(name, 1, read_only=True)
-    left.declare(f"{name}_even", 2, only_even=True)
-    for each in (name, f"{name}_even"):
-        left.withdraw(each)
-        with pytest.raises(ParameterUnknown, match=each):
-            right.get_parameter(each, left.node_name(), timeout=60)
+    left.withdraw(name)
+    with pytest.raises(ParameterUnknown, match=name):
+        right.get_parameter(name, left.node_name(), timeout=60)
     assert left.declare(name, "another type") == "another type"
-    assert left.declare(f"{name}_even", 3) == 3
-    right.set_parameter(f"{name}_even", 5, left.node_name(), timeout=60)
 
 
 def test_numbers_and_ranges_have_their_limits(graph, left, name):
@@ -144,7 +140,6 @@ def test_numbers_and_ranges_have_their_limits(graph, left, name):
         pytest.param([], {}, [["a"]], [[1]], "", id="type of an empty list, alone one of texts"),
         pytest.param(5, {"minimum": 1}, [1_000_000], [0], "", id="open range"),
         pytest.param("fixed", {"read_only": True}, [], ["loose"], "read-only", id="read-only"),
-        pytest.param(2, {"only_even": True}, [4], [3], "it is odd", id="refused by the node"),
     ],
 )
 def test_a_parameter_keeps_to_its_declaration(left, right, name, default, rules, accepted, refused, why):

@@ -6,7 +6,6 @@ Everything here happens on the loop.
 
 import asyncio
 import hashlib
-import math
 import secrets
 from collections.abc import Awaitable, Callable, Coroutine, Iterable
 from contextlib import suppress
@@ -141,7 +140,7 @@ class GoalHandle:
             return True
         left = self.leaves_by - self._sender.clock.elapsed
         try:
-            await self._wait(self._followers, None if left == math.inf else left)
+            await self._wait(self._followers, left)
         except TimeoutError:
             return False
         return True
@@ -194,8 +193,8 @@ class GoalHandle:
             settle(answer, isinstance(end, GoalOutcome) and end.status == "canceled", problem)
 
 
-OrphanPolicy = Literal["cancel", "keep"] | Callable[[str], Awaitable[bool]]
-"""What to do with orphans: cancel them, leave them, or ask a question (text) and cancel them if the answer is True."""
+OrphanPolicy = Literal["cancel", "keep"]
+"""What to do with orphans: cancel them, or leave them."""
 
 
 class Orphans:
@@ -237,16 +236,14 @@ class Orphans:
         self._known.add(goal_id)
         return True
 
-    async def may_cancel(self, action: str) -> bool:
-        """Decide whether to cancel an orphan of *action*, and log it."""
-        found = f"action {action} is still executing a goal of an earlier run of this node"
-        if self._policy == "cancel":
-            self._log(f"warning: {found}; cancelling it")
-            return True
-        if self._policy == "keep":
-            self._log(f"warning: {found}; the robot may be moving")
-            return False
-        return await self._policy(f"{found}. Cancel it?")
+    def may_cancel(self, action: str) -> bool:
+        """Return whether to cancel an orphan of *action*, and log it."""
+        cancels = self._policy == "cancel"
+        consequence = "cancelling it" if cancels else "the robot may be moving"
+        self._log(
+            f"warning: action {action} is still executing a goal of an earlier run of this node; {consequence}"
+        )
+        return cancels
 
 
 LeavingGoals = dict[str, dict[GoalHandle, None]]
@@ -402,22 +399,12 @@ class ActionClient:
             return
         self._heard_of_goals = True
         for goal_id in goal_ids:
-            if goal_id not in self._goals and self._orphans.newly_found(goal_id):
-                pending = GoalHandle(self, goal_id, None)
-                pending.accepted = pending.abandoned = True
-                self._goals[goal_id] = pending
-                pending.leaves_by = math.inf  # newer goals wait for the decision
-                self._leaving.setdefault(self.name, {})[pending] = None
+            found = goal_id not in self._goals and self._orphans.newly_found(goal_id)
+            if found and self._orphans.may_cancel(self.name):
+                pending = self._goals[goal_id] = GoalHandle(self, goal_id, None)
+                pending.accepted = True
                 self.wire.adopt_goal(goal_id)
-                self._keep(self._decide(pending, self._orphans))
-
-    async def _decide(self, pending: GoalHandle, orphans: Orphans) -> None:
-        if not await orphans.may_cancel(self.name):
-            self.has_left(pending)
-            self._forget(pending.goal_id)
-        elif pending.end is None:
-            pending.leaves_by = None
-            self.abandon(pending)
+                self.abandon(pending)
 
     def has_left(self, pending: GoalHandle) -> None:
         """Let newer goals continue: a goal has ended, or its server refuses to cancel it."""

@@ -39,8 +39,8 @@ class GraphAddress:
         node_name: name of our node, in place of the program's default.
         remap: remapping rules, ``{"/cmd_vel": "/robot_1/cmd_vel"}``.
         parameters: values of declared parameters of our node, in place of the defaults, ``{"speed": 0.3}``.
-        orphans: what to do with action goals that an earlier run of this node left on a real graph: ``"cancel"``,
-            ``"keep"``, or a coroutine function that takes a question and returns True to cancel.
+        orphans: what to do with action goals that an earlier run of this node left on a real graph: ``"cancel"`` or
+            ``"keep"``.
     """
 
     ros: str = "memory"

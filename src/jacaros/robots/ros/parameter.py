@@ -28,7 +28,6 @@ class DeclaredParameter:
         description: one line of text.
         read_only: whether it cannot be changed.
         minimum, maximum: range of a number.
-        accept: decides about a new value: returns None to accept it, or the reason for refusing it.
     """
 
     default: ParameterValue
@@ -36,7 +35,6 @@ class DeclaredParameter:
     read_only: bool = False
     minimum: float | None = None
     maximum: float | None = None
-    accept: Callable[[ParameterValue], str | None] | None = None
 
 
 def fault_of(value: ParameterValue, declaration: DeclaredParameter) -> str | None:
@@ -196,7 +194,6 @@ class DeclaredParameters:
         node: its absolute name, for messages.
         given: values from outside, in place of defaults.
         changed: called after every declaration and change.
-        log: called with one line about a failed check.
     """
 
     def __init__(
@@ -204,12 +201,10 @@ class DeclaredParameters:
         node: str,
         given: GivenParameters,
         changed: Callable[[Mapping[str, ParameterValue]], None],
-        log: Callable[[str], None],
     ) -> None:
         self._node = node
         self._given = given
         self._changed = changed
-        self._log = log
         self._declarations: dict[str, DeclaredParameter] = {}
         self._values: dict[str, ParameterValue] = {}
 
@@ -257,22 +252,8 @@ class DeclaredParameters:
         self._changed({name: taken})
 
     def _require(self, name: str, declaration: DeclaredParameter, value: ParameterValue) -> None:
-        what = f"parameter {name} of {self._node}"
         if (fault := fault_of(value, declaration)) is not None:
-            raise ParameterRefused(f"{what} is {fault}")
-        reason = self._judged(declaration, value)
-        if reason is not None:
-            raise ParameterRefused(f"{what} cannot be {value!r}: {reason}")
-
-    def _judged(self, declaration: DeclaredParameter, value: ParameterValue) -> str | None:
-        if declaration.accept is None:
-            return None
-        try:
-            return declaration.accept(value)
-        except Exception as problem:  # the node keeps running, and the caller receives the reason
-            reason = f"{type(problem).__name__}: {problem}"
-            self._log(f"the check of a parameter of {self._node} failed: {reason}")
-            return reason
+            raise ParameterRefused(f"parameter {name} of {self._node} is {fault}")
 
     def _unknown(self, name: str) -> str:
         known = f"it has {', '.join(self.names())}" if self._values else "it has none"

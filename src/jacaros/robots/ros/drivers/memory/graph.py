@@ -261,7 +261,6 @@ class MemoryNode(Backend):
             self.node_name,
             self.given_parameters,
             self._parameters_changed,
-            self.log,
         )
         self.vanished = False
         self._goal_numbers = itertools.count(1)

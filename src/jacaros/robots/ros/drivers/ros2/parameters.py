@@ -1,7 +1,6 @@
 """The parameters of our own node, which rclpy stores."""
 
 import math
-import threading
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -9,7 +8,6 @@ from rcl_interfaces.msg import (  # type: ignore[import-not-found]
     FloatingPointRange,
     IntegerRange,
     ParameterDescriptor,
-    SetParametersResult,
 )
 from rclpy.exceptions import (  # type: ignore[import-not-found]
     ParameterAlreadyDeclaredException,
@@ -21,7 +19,6 @@ from rclpy.parameter import Parameter  # type: ignore[import-not-found]
 from jacaros.robots.ros.drivers.ros2.node import Ros2Node
 from jacaros.robots.ros.drivers.ros2.types import ARRAYS, parameter
 from jacaros.robots.ros.errors import ParameterRefused, ParameterUnknown
-from jacaros.robots.ros.handoff import LoopEnded, ask
 from jacaros.robots.ros.parameter import DeclaredParameter, ParameterValue, checked_value, fault_of
 from jacaros.robots.ros.parameter_services import ParameterEvents
 
@@ -29,18 +26,12 @@ _LARGEST = 2**63 - 1
 
 
 class OwnParameters:
-    """The parameters of our own node.
-
-    rclpy stores them and serves other nodes on its thread; decisions about new values are made on the loop.
-    """
+    """The parameters of our own node; rclpy stores them and serves other nodes on its thread."""
 
     def __init__(self, node: Ros2Node, events: ParameterEvents) -> None:
         self.node = node.node_name
         self._node = node
         self._parameter_events = events
-        self._judges: dict[str, Callable[[ParameterValue], str | None]] = {}
-        self._loops_thread = threading.get_ident()
-        node.rcl.add_on_set_parameters_callback(self._judge)
 
     def declare(self, name: str, declaration: DeclaredParameter) -> ParameterValue:
         """Declare a parameter."""
@@ -52,8 +43,6 @@ class OwnParameters:
                 if (fault := fault_of(candidate, declaration)) is not None:
                     raise ParameterRefused(f"parameter {name} of {self.node} is {fault}")
             value = parameter(name, given, default.type_)
-        if declaration.accept is not None and not self._node.rcl.has_parameter(name):
-            self._judges[name] = declaration.accept
         try:
             made = self._node.rcl.declare_parameter(
                 name, value.value, _descriptor(default, declaration), ignore_override=True
@@ -61,7 +50,6 @@ class OwnParameters:
         except ParameterAlreadyDeclaredException:
             raise ParameterRefused(f"parameter {name} of {self.node} is already declared") from None
         except (ParameterException, ValueError) as problem:
-            self._judges.pop(name, None)
             raise ParameterRefused(f"parameter {name} of {self.node}: {problem}") from None
         if value.value == [] and value.type_ != made.type_:
             made = self._retyped(value, declaration.read_only)
@@ -83,7 +71,6 @@ class OwnParameters:
             raise ParameterUnknown(self._unknown(name))
         rcl.describe_parameter(name).read_only = False  # rclpy applies it to our own node, too
         rcl.undeclare_parameter(name)
-        self._judges.pop(name, None)
 
     async def names(self, timeout: float | None = None) -> list[str]:
         """Names of the node's parameters."""
@@ -119,32 +106,6 @@ class OwnParameters:
     def _unknown(self, name: str) -> str:
         known = sorted(self._node.rcl.list_parameters([], 0).names)
         return f"node {self.node} has no parameter {name}; it has {', '.join(known)}"
-
-    def _judge(self, changes: list[Any]) -> Any:
-        """Decide about changes; called by rclpy on the thread that makes them."""
-        for change in changes:
-            accept = self._judges.get(change.name)
-            if accept is not None and (reason := self._judged(accept, self._value(change))) is not None:
-                return SetParametersResult(successful=False, reason=reason)
-        return SetParametersResult(successful=True)
-
-    def _judged(self, accept: Callable[[ParameterValue], str | None], value: ParameterValue) -> str | None:
-        def judge(report: Callable[[str | None, Exception | None], None]) -> None:
-            try:
-                report(accept(value), None)
-            except Exception as problem:  # the node keeps running, and the caller receives the reason
-                reason = f"{type(problem).__name__}: {problem}"
-                self._node.log(f"the check of a parameter of {self.node} failed: {reason}")
-                report(reason, None)
-
-        if threading.get_ident() == self._loops_thread:
-            told: list[str | None] = []
-            judge(lambda reason, _: told.append(reason))
-            return told[0]
-        try:
-            return ask(self._node.loop, judge, lambda: self._node.ended)
-        except LoopEnded:
-            return "the node is leaving"
 
 
 def _descriptor(default: Any, declaration: DeclaredParameter) -> Any:
