@@ -63,19 +63,6 @@ def test_a_door_does_not_close_on_a_person() -> None:
     assert world.move_door("gate", False) is None
 
 
-@pytest.mark.world("robots: [{name: turtlebot}]\n")
-async def test_an_acceleration_is_not_computed_over_a_gap_of_messages(lab: Lab) -> None:
-    first = lab.backend.subscription("/imu", "sensor_msgs/msg/Imu", lambda sample: None)
-    await lab.drive(0.5, 0.0)
-    first.close()
-    await lab.drive(3.0, 0.4)
-    messages = lab.hear("/imu", "sensor_msgs/msg/Imu")
-    await lab.drive(0.5, 0.4)
-    assert messages
-    ahead = [message.linear_acceleration.x for message in messages]
-    assert ahead == pytest.approx([0.0] * len(messages), abs=1e-9)
-
-
 def planner(*walls: Segment) -> Planner:
     bounds = Rectangle(-2.0, -2.0, 2.0, 2.0)
     return Planner(Grid(WorldDescription(bounds=bounds, segments=walls)), RADIUS)

@@ -57,7 +57,6 @@ FIELDS: Final[Mapping[str, tuple[str, ...]]] = {
     "sound": ("notes", "append"),
     "picked": ("object", "x", "y"),  # by a gripper, and the place of the object
     "placed": ("object", "x", "y"),
-    "received": ("topic", "message"),  # on a topic that the world file adds
     "fault": ("fault", "kind", "state"),
     # Without a robot:
     "door_opened": ("door",),  # at the middle of the door

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Annotated, Any, Final
+from typing import Annotated, Final
 
 from jacaros.robots.plane.pose import ORIGIN, Pose
 from jacaros.robots.plane.trigonometry import PI, TWO_PI, radians
@@ -124,11 +124,11 @@ def _names(text: str) -> tuple[str, ...]:
 
 TOPICS: Final = _names(
     """
-    amcl_pose battery_state camera/camera_info camera/depth/image_raw camera/image_raw cleaning/task
+    amcl_pose battery_state cleaning/task
     cleaning/tool cmd_audio cmd_lightring cmd_vel cmd_vel_mux/input/navi dock_status goal_pose
-    hazard_detection imu initialpose jason/perception mobile_base/commands/velocity
+    hazard_detection initialpose jason/perception mobile_base/commands/velocity
     mobile_base/events/bumper mobile_base/events/cliff mobile_base/events/wheel_drop
-    mobile_base/sensors/core move_base_simple/goal odom scan sensor_state sonar
+    mobile_base/sensors/core move_base_simple/goal odom scan sensor_state
     """
 )
 SERVICES: Final = _names(
@@ -153,26 +153,7 @@ CREATE3: Final = frozenset(
     _names("cmd_audio cmd_lightring dock dock_status drive_distance hazard_detection rotate_angle undock")
 )
 TURTLEBOT3: Final = frozenset(_names("sensor_state"))
-CAMERA: Final = frozenset(name for name in TOPICS if name.startswith("camera/"))
-SONAR: Final = frozenset(_names("sonar"))
-"""Names that only some robots have: those of a base or of its driver, and of optional sensors."""
-
-
-@dataclass(frozen=True, slots=True)
-class Added:
-    """A topic or a service of the user's robot that the simulator does not know.
-
-    Attributes:
-        name: below the robot's namespace; absolute with a leading slash.
-        type_name: type of the messages or of the service.
-        fields: fields of the published message or of the response.
-        rate: messages per second; 0 for a topic that the robot subscribes to.
-    """
-
-    name: str
-    type_name: str
-    fields: Mapping[str, Any] = field(default_factory=dict)
-    rate: float = 1.0
+"""Names that only some robots have: those of a base or of its driver."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,14 +163,10 @@ class RobotInterface:
     Attributes:
         lacking: names of other kinds of robots, which this one does not have.
         renamed: its own names for those of the simulator; these are offered even if they are lacking otherwise.
-        topics: further topics.
-        services: further services.
     """
 
     lacking: frozenset[str] = frozenset()
     renamed: Mapping[str, str] = field(default_factory=dict)
-    topics: tuple[Added, ...] = ()
-    services: tuple[Added, ...] = ()
 
     def name_of(self, name: str, prefix: str = "") -> str | None:
         """Return the absolute name for a name of the simulator; None if the robot does not have it.
@@ -250,7 +227,7 @@ KINDS: Final[Mapping[str, RobotDescription]] = {
         radius=0.177,
         limits=RobotLimits(speed=0.7, turn_rate=PI, acceleration=0.8, command_timeout=0.6),
         laser=LaserSettings(field=radians(57.0), range_min=0.45, range_max=10.0),
-        interface=RobotInterface(CREATE3 | TURTLEBOT3 | SONAR),
+        interface=RobotInterface(CREATE3 | TURTLEBOT3),
     ),
     # Burger: its specification, the acceleration of its Nav2 parameters, and the LDS-01.
     "turtlebot3": RobotDescription(
@@ -258,7 +235,7 @@ KINDS: Final[Mapping[str, RobotDescription]] = {
         limits=RobotLimits(speed=0.22, turn_rate=2.84, acceleration=2.5, turn_acceleration=3.2),
         laser=LaserSettings(range_min=0.12, range_max=3.5),
         navigation=NavigationSettings(speed=0.22),
-        interface=RobotInterface(KOBUKI | CREATE3 | CAMERA | SONAR),
+        interface=RobotInterface(KOBUKI | CREATE3),
     ),
     # Create 3 with its safety features on, and the RPLIDAR A1.
     "turtlebot4": RobotDescription(
@@ -266,7 +243,7 @@ KINDS: Final[Mapping[str, RobotDescription]] = {
         limits=RobotLimits(speed=0.306, turn_rate=1.9, acceleration=0.9),
         laser=LaserSettings(range_min=0.15, range_max=12.0),
         navigation=NavigationSettings(speed=0.26),
-        interface=RobotInterface(KOBUKI | TURTLEBOT3 | SONAR),
+        interface=RobotInterface(KOBUKI | TURTLEBOT3),
     ),
 }
 """Robots that a world file names by kind, with the data of their makers and drivers.

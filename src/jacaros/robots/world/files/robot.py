@@ -1,14 +1,10 @@
 """The ``robots`` part of a world file: one mapping to a `RobotDescription`, which declares its entries.
 
 Among its ``topics``, ``services`` and ``actions``, a name of the simulator with another name renames it, or adds it to a
-robot whose kind lacks it. A new name with a type adds a topic or a service::
+robot whose kind lacks it::
 
     topics:
       scan: front/scan                                        # below the namespace; /front/scan: not
-      temperature: {type: sensor_msgs/msg/Temperature, message: {temperature: 21.5}, rate: 1}    # published
-      horn: {type: std_msgs/msg/Bool, receive: true}          # subscribed to
-    services:
-      reset: {type: std_srvs/srv/Trigger, response: {success: true}}
     actions:
       navigate_to_pose: go_to
 """
@@ -26,7 +22,6 @@ from jacaros.robots.world.data.robot import (
     SERVICES,
     TOPICS,
     USUAL,
-    Added,
     CleaningTool,
     NavigationSettings,
     RobotDescription,
@@ -118,36 +113,29 @@ def _removes(node: YamlNode, _: object) -> tuple[str, ...]:
 
 SECTIONS = ("topics", "services", "actions")
 _KNOWN: Mapping[str, tuple[str, ...]] = {"topics": TOPICS, "services": SERVICES, "actions": ACTIONS}
-_TYPES: Mapping[str, str] = {"topics": "msg", "services": "srv"}
-_KEYS = {"topics": ("type", "message", "rate", "receive"), "services": ("type", "response")}
 _NAME = re.compile(r"/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*")
-_FASTEST = 20.0
-"""Highest rate of an added topic, in messages per second: that of the world's ticks."""
 
 
 def read_interface(entries: Mapping[str, YamlNode], usual: RobotInterface) -> RobotInterface:
     """Read the names of one robot; *usual* are those of its kind."""
     renamed: dict[str, str] = {}
-    added: dict[str, list[Added]] = {section: [] for section in _TYPES}
     for section in SECTIONS:
         given = list(entries[section].entries()) if section in entries else []
         others = set(_KNOWN[section]) - usual.lacking - {key.value for key, _ in given}
         used = {name: name for name in others}
         for key, value in given:
-            name = _name(key)
-            if key.value in _KNOWN[section]:
-                renamed[name] = offered = _name(value)
-            elif section == "actions" or not isinstance(value.value, dict):
-                _unknown(key, section)
+            if key.value not in _KNOWN[section]:
+                listed = f"known names: {', '.join(_KNOWN[section])}"
+                help = suggestion(str(key.value), _KNOWN[section], listed)
+                key.wrong(f"unknown name in '{section}': `{key.value}`", help)
                 continue
-            else:
-                added[section].append(_added(offered := name, value, section))
+            renamed[key.value] = offered = _name(value)
             if offered in used:
                 value.wrong(
                     f"`{offered}` is also the name of `{used[offered]}`", "give one of them another name"
                 )
-            used[offered] = name
-    return RobotInterface(usual.lacking, renamed, tuple(added["topics"]), tuple(added["services"]))
+            used[offered] = key.value
+    return RobotInterface(usual.lacking, renamed)
 
 
 def _name(node: YamlNode) -> str:
@@ -157,30 +145,3 @@ def _name(node: YamlNode) -> str:
             f"'{text}' is not a ROS name", "use letters, digits and _, with / between parts: front/scan"
         )
     return text
-
-
-def _unknown(key: YamlNode, section: str) -> None:
-    other = f"known names: {', '.join(_KNOWN[section])}"
-    if section in _TYPES:
-        other = f"to add it, give its type: `{key.value}: {{type: PACKAGE/{_TYPES[section]}/TYPE}}`"
-    key.wrong(
-        f"unknown name in '{section}': `{key.value}`", suggestion(str(key.value), _KNOWN[section], other)
-    )
-
-
-def _added(name: str, node: YamlNode, section: str) -> Added:
-    entries = node.mapping(*_KEYS[section], required=("type",))
-    kind, type_name = _TYPES[section], entries["type"].text() if "type" in entries else ""
-    if type_name and not re.fullmatch(rf"[a-z]\w*/{kind}/[A-Z]\w*", type_name):
-        entries["type"].wrong(f"'{type_name}' is not a type", f"write it as PACKAGE/{kind}/TYPE")
-    if "receive" in entries and entries["receive"].truth():
-        for key in ("message", "rate"):
-            if key in entries:
-                entries[key].wrong(
-                    f"a topic that is received has no '{key}'", f"remove '{key}', or 'receive'"
-                )
-        return Added(name, type_name, rate=0.0)
-    given = entries.get("message", entries.get("response"))
-    fields = {str(key.value): value.value for key, value in given.entries()} if given is not None else {}
-    rate = entries["rate"].number(0.01, _FASTEST, 1.0) if "rate" in entries else 1.0
-    return Added(name, type_name, fields, rate)

@@ -14,11 +14,8 @@ from jacaros.robots.ros.node import Capability, Publisher
 from jacaros.robots.ros.qos import QoS
 from jacaros.robots.world.graph.on_graph import LATCHED, RobotOnGraph
 from jacaros.robots.world.physics.localisation import OdometryMoves
-from jacaros.robots.world.physics.rendering import CAMERA_HEIGHT
 
 MAP, ODOMETRY, FOOTPRINT, BASE, SCAN = "map", "odom", "base_footprint", "base_link", "base_scan"
-CAMERA = "camera_optical_frame"
-"""Frame of images (REP 103): x to the right, y down, z ahead."""
 POSE = "geometry_msgs/msg/PoseStamped"
 POSE_WITH_COVARIANCE = "geometry_msgs/msg/PoseWithCovarianceStamped"
 _PATIENCE = 1.0
@@ -89,8 +86,8 @@ class RobotTransforms:
     """Publishes one robot's frames while there are subscribers.
 
     ``map`` to ``odom`` and ``odom`` to ``base_footprint`` are published on ``/tf`` at 20 Hz. ``base_footprint`` to
-    ``base_link`` to ``base_scan``, all at the same place, ``base_link`` to ``camera_optical_frame``, and the robot's own
-    ``map`` if it has a namespace, are published on ``/tf_static``, once.
+    ``base_link`` to ``base_scan``, all at the same place, and the robot's own ``map`` if it has a namespace, are published
+    on ``/tf_static``, once.
     """
 
     def __init__(self, at: RobotOnGraph) -> None:
@@ -126,20 +123,13 @@ class RobotTransforms:
         if self._static_is_out or self._publisher is None:
             return
         self._static_is_out = True
-        transforms = [self._transform(FOOTPRINT, BASE), self._transform(BASE, SCAN), self._of_camera()]
+        transforms = [self._transform(FOOTPRINT, BASE), self._transform(BASE, SCAN)]
         if self._at.frame_prefix:
             transforms.append(self._transform("", MAP))
             transforms[-1].header.frame_id = MAP
         with suppress(RosError):  # the type exists, as that of the publisher did
             for transform in transforms:
                 self._at.backend.tf_broadcast(transform, static=True)
-
-    def _of_camera(self) -> Any:
-        message = self._transform(BASE, CAMERA)
-        message.transform.translation.z = CAMERA_HEIGHT
-        rotation = message.transform.rotation
-        rotation.x, rotation.y, rotation.z, rotation.w = -0.5, 0.5, -0.5, 0.5
-        return message
 
     def _transform(self, parent: str, child: str, place: Placement = _HERE) -> Any:
         message = self._at.backend.message("geometry_msgs/msg/TransformStamped")

@@ -4,34 +4,26 @@ Navigation and docking are in `jacaros.robots.world.navigation`.
 """
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any, Final
 
 from jacaros.robots.plane.pose import Placement, Pose
 from jacaros.robots.ros.backend import Backend, Sample
-from jacaros.robots.ros.errors import MessageMismatch, UnknownInterface
-from jacaros.robots.ros.message import plain, to_seconds
-from jacaros.robots.ros.names import response_type
-from jacaros.robots.world.data.robot import Added, absolute
+from jacaros.robots.ros.message import to_seconds
 from jacaros.robots.world.graph.frames import MAP, POSE_WITH_COVARIANCE, pose_fault, pose_of
-from jacaros.robots.world.graph.on_graph import TICKS_PER_SECOND, ActiveGoal, RobotOnGraph, WorldTime
+from jacaros.robots.world.graph.on_graph import ActiveGoal, RobotOnGraph, WorldTime
 from jacaros.robots.world.graph.publishing import Tick
 from jacaros.robots.world.graph.sensors import SENSORS
 from jacaros.robots.world.physics.localisation import SimulatedLocalisation
 from jacaros.robots.world.physics.robot import Robot, approach
 from jacaros.robots.world.physics.things import Thing
-from jacaros.runtime.errors import UsageError
 
 COMMANDS: Final = ("/cmd_vel", "/cmd_vel_mux/input/navi", "/mobile_base/commands/velocity")
 """Topics of velocity commands: those of most robots, of the Kobuki's multiplexer, and of its base."""
 
 
 class RobotNode(RobotOnGraph):
-    """One robot with its sensors and commands, and the topics and services that a world file adds to it.
-
-    Raises:
-        UsageError: an added type is not installed, or does not have the fields that the world file states.
-    """
+    """One robot with its sensors and commands."""
 
     def __init__(
         self, time: WorldTime, robot: Robot, backend: Backend, localisation: SimulatedLocalisation
@@ -40,9 +32,6 @@ class RobotNode(RobotOnGraph):
         self._ticks = 0
         self._sensors: list[Tick] = [sensor(self) for sensor in SENSORS]
         self._colors: list[str] = []
-        interface = robot.description.interface
-        self._add(interface.topics, self._add_topic)
-        self._add(interface.services, self._add_service)
         self.subscribe("/cmd_lightring", "irobot_create_msgs/msg/LightringLeds", self._light)
         self.subscribe("/cmd_audio", "irobot_create_msgs/msg/AudioNoteVector", self._play)
         if robot.description.gripper_reach:
@@ -72,40 +61,6 @@ class RobotNode(RobotOnGraph):
         self.robot.misled = None
         self.localisation.map_to_odom = Placement.at(*pose).then(self.robot.odometry.placement.inverse())
         self.robot.put_downs += 1
-
-    def _add(self, each_added: Iterable[Added], add: Callable[[Added, str], None]) -> None:
-        for added in each_added:
-            try:
-                add(added, absolute(added.name, self.prefix))
-            except (UnknownInterface, MessageMismatch) as error:
-                raise UsageError(f"`{added.name}` of the robot `{self.robot.name}`: {error}") from None
-
-    def _add_service(self, service: Added, name: str) -> None:
-        """Offer a service of a world file with a constant response."""
-        self.backend.message(response_type(service.type_name), **service.fields)  # finds mistakes
-        self.keep(self.backend.service(name, service.type_name, lambda request: service.fields))
-
-    def _add_topic(self, topic: Added, name: str) -> None:
-        """Publish the constant message of a topic of a world file, or record the messages that it receives."""
-        if not topic.rate:
-            self.keep(self.backend.subscription(name, topic.type_name, self._record))
-            return
-        publisher = self.keep(self.backend.publisher(name, topic.type_name))
-        publisher.message(**topic.fields)  # finds mistakes
-        period = max(1, round(TICKS_PER_SECOND / topic.rate))
-
-        def publish(ticks: int) -> None:
-            if ticks % period == 0:
-                message = publisher.message(**topic.fields)
-                if hasattr(message, "header"):
-                    self.fill_header(message.header, message.header.frame_id or "base_link")
-                publisher.publish(message)
-
-        self._sensors.append(publish)
-
-    def _record(self, sample: Sample) -> None:
-        self.time.catch_up()
-        self.robot.tell("received", {"topic": sample.topic, "message": plain(sample.message)})
 
     def _light(self, sample: Sample) -> None:
         """Record colours as ``#rrggbb``, counter-clockwise from the front; none if the robot controls its lights."""

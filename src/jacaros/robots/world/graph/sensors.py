@@ -1,4 +1,4 @@
-"""The topics that a robot publishes: odometry, battery, laser, IMU, sonar, bumpers, cliffs, docks and recognised objects.
+"""The topics that a robot publishes: odometry, battery, laser, bumpers, cliffs, docks and recognised objects.
 
 To add one, write a function that fills its message, and list it in `SENSORS`.
 """
@@ -10,12 +10,9 @@ from typing import Any, Final
 from jacaros.robots.plane.shapes import Segment
 from jacaros.robots.plane.trigonometry import radians, sine_cosine
 from jacaros.robots.ros.message import constant
-from jacaros.robots.world.graph.camera import camera
 from jacaros.robots.world.graph.frames import AmclPose, RobotTransforms
 from jacaros.robots.world.graph.on_graph import TICKS_PER_SECOND, RobotOnGraph
 from jacaros.robots.world.graph.publishing import Sensor, Tick, events, sensor
-from jacaros.robots.world.physics.ranging import FIELD, RANGE_MAX, RANGE_MIN, echo
-from jacaros.robots.world.physics.rendering import FOCAL_LENGTH, WIDTH
 
 
 # Fields are assigned one by one: at 20 messages per second this is five times as fast as nested messages made from
@@ -68,49 +65,14 @@ def _scan(at: RobotOnGraph, message: Any) -> None:
     message.range_min, message.range_max = laser.settings.range_min, laser.settings.range_max
 
 
-GRAVITY = 9.80665
-"""Acceleration measured upwards at rest, in m/s²."""
-_LONGEST_STEP = 0.2
-"""Longest gap between two messages, in seconds, over which an acceleration is computed."""
-
-
-def _imu(at: RobotOnGraph) -> Tick:
-    """Heading, turn rate and acceleration at the robot's centre.
-
-    The heading is the true one, as of an ideal compass. The acceleration includes gravity, and is the mean since the last
-    message.
-    """
-    time, speed = -_LONGEST_STEP, 0.0
-
-    def fill(at: RobotOnGraph, message: Any) -> None:
-        nonlocal time, speed
-        robot, now = at.robot, at.time.world.time
-        passed, gained = now - time, robot.speed - speed
-        time, speed = now, robot.speed
-        message.orientation.z, message.orientation.w = sine_cosine(0.5 * robot.yaw)
-        message.angular_velocity.z = robot.turn_rate
-        acceleration = message.linear_acceleration
-        acceleration.x = gained / passed if 0.0 < passed <= _LONGEST_STEP else 0.0
-        acceleration.y, acceleration.z = robot.speed * robot.turn_rate, GRAVITY
-
-    return sensor("/imu", "sensor_msgs/msg/Imu", fill)(at)
-
-
-def _sonar(at: RobotOnGraph, message: Any) -> None:
-    """The distance to the nearest thing in a cone of 30 degrees ahead, in metres."""
-    world, robot = at.time.world, at.robot
-    found = echo(world.segments, world.others(robot), robot.placement)
-    message.radiation_type = constant(message, "ULTRASOUND")
-    message.field_of_view, message.min_range, message.max_range = FIELD, RANGE_MIN, RANGE_MAX
-    message.range = found if found <= RANGE_MAX else math.inf  # REP 117: no echo
-
-
 RECOGNISED_WITHIN = 4.0
 """Distance up to which objects are recognised, in metres."""
+_SINE, _COSINE = sine_cosine(radians(30.0))
+"""Of half the field of view of the camera that recognises them."""
 
 
 def _recognised(at: RobotOnGraph) -> Mapping[str, Any]:
-    """The objects in the camera image, as a vision program names them to the original JaCaROS.
+    """The objects in front of the robot, as a vision program names them to the original JaCaROS.
 
     ``cup,0.30,-0.10,0.00`` is name, metres ahead, left and up.
     """
@@ -119,8 +81,8 @@ def _recognised(at: RobotOnGraph) -> Mapping[str, Any]:
     for each in world.objects.by_name.values():
         x, y = each.place
         ahead, left = frame.local(x, y)
-        in_image = 0.0 < ahead <= RECOGNISED_WITHIN and abs(left) * FOCAL_LENGTH <= 0.5 * WIDTH * ahead
-        if in_image and not Segment(robot.x, robot.y, x, y).crosses(*world.segments):
+        in_view = 0.0 < ahead <= RECOGNISED_WITHIN and abs(left) * _COSINE <= ahead * _SINE
+        if in_view and not Segment(robot.x, robot.y, x, y).crosses(*world.segments):
             seen.append(f"{each.name},{ahead:.2f},{left:.2f},0.00")
     return {"perception": seen}
 
@@ -266,9 +228,6 @@ SENSORS: Final[Sequence[Sensor]] = (
         always=True,
     ),
     _laser,
-    _imu,
-    sensor("/sonar", "sensor_msgs/msg/Range", _sonar, 2),
-    camera,
     sensor(
         "/jason/perception",
         "perception_msgs/msg/perception",

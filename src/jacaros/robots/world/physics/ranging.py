@@ -1,4 +1,4 @@
-"""Range finders: laser and sonar.
+"""The laser range finder.
 
 The sweep of the laser intersects a wall only with the beams between the bearings of its two ends. The bearings come from
 the C library's arctangent, which only *selects* candidates (one more beam on each side makes its last bit irrelevant); the
@@ -9,9 +9,8 @@ import math
 import random
 from collections.abc import Iterable, Sequence
 
-from jacaros.robots.plane.pose import Placement
 from jacaros.robots.plane.shapes import Circle, Segment
-from jacaros.robots.plane.trigonometry import PI, TWO_PI, radians, sine_cosine
+from jacaros.robots.plane.trigonometry import PI, TWO_PI, sine_cosine
 from jacaros.robots.world.data.robot import LaserSettings
 
 
@@ -106,49 +105,3 @@ class Laser:
                 root = radius2 - across * across
                 if root >= 0.0 and along > 0.0 and (distance := along - math.sqrt(root)) < ranges[beam]:
                     ranges[beam] = distance
-
-
-FIELD = radians(30.0)
-"""Width of the cone, in radians."""
-RANGE_MIN, RANGE_MAX = 0.02, 4.0
-"""Maximum range in metres; there is no echo from farther away."""
-_EDGE_SINE, _EDGE_COSINE = sine_cosine(0.5 * FIELD)
-
-
-def echo(segments: Iterable[Segment], circles: Iterable[Circle], sonar: Placement) -> float:
-    """Return the distance in metres from a sonar to the nearest point in its cone, ``inf`` for none."""
-    found = [_of_segment(*sonar.local(ax, ay), *sonar.local(bx, by)) for ax, ay, bx, by in segments]
-    for x, y, radius in circles:
-        ahead, left = sonar.local(x, y)
-        found.append(_of_circle(ahead, abs(left), radius))
-    return min(found, default=math.inf)
-
-
-def _of_segment(ax: float, ay: float, bx: float, by: float) -> float:
-    """Return the distance to the nearest point of a segment within the cone (ahead is x)."""
-    first, last = 0.0, 1.0
-    for side in (1.0, -1.0):
-        # Metres inside this edge of the cone, at both ends.
-        at_a = _EDGE_SINE * ax + side * _EDGE_COSINE * ay
-        at_b = _EDGE_SINE * bx + side * _EDGE_COSINE * by
-        if at_a < 0.0 and at_b < 0.0:
-            return math.inf
-        if at_a < 0.0:
-            first = max(first, at_a / (at_a - at_b))
-        elif at_b < 0.0:
-            last = min(last, at_a / (at_a - at_b))
-    if first > last:
-        return math.inf
-    dx, dy = bx - ax, by - ay
-    place = min(max(-(ax * dx + ay * dy) / (dx * dx + dy * dy), first), last)
-    px, py = ax + place * dx, ay + place * dy
-    return math.sqrt(px * px + py * py)
-
-
-def _of_circle(cx: float, cy: float, radius: float) -> float:
-    """Return the distance to the nearest point of a disc within the cone; *cy* is not negative, by symmetry."""
-    if _EDGE_SINE * cx - _EDGE_COSINE * cy >= 0.0:  # the centre is in the cone
-        return max(0.0, math.sqrt(cx * cx + cy * cy) - radius)
-    along, across = _EDGE_COSINE * cx + _EDGE_SINE * cy, _EDGE_COSINE * cy - _EDGE_SINE * cx
-    root = radius * radius - across * across
-    return along - math.sqrt(root) if root >= 0.0 and along > 0.0 else math.inf
