@@ -86,7 +86,6 @@ def worlds() -> Schema:
     of_robots = {
         "kind": {"type": "string"},
         "pose": POSE,
-        "footprint": PAIR,
         "navigation": {"anyOf": [{"type": "boolean"}, declared(robot.NavigationSettings())]},
         "gripper": {"anyOf": [{"type": "boolean"}, mapping({"reach": NUMBER})]},
         "tools": named(declared(robot.CleaningTool("", ()), removes=listed(TEXT))),

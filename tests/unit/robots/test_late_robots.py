@@ -1,12 +1,10 @@
 """Robots that are late, slow, sticky or noisy: the drive operations arrive, or say what they have measured."""
 
 import asyncio
-import json
 import math
 import random
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -179,17 +177,6 @@ def test_what_was_measured_is_a_property() -> None:
     sticky = drive(Robot(dead_band=0.06), ("moveForward", 0.5), ("moveForward", 0.01)).quality
     assert sticky is not None
     assert 0.0 <= sticky[-1] < 0.12
-
-
-def test_what_was_measured_is_kept_for_the_next_run(tmp_path: Path) -> None:
-    kept = tmp_path / "robot.json"
-    sticky = replace(LATE, dead_band=0.08)
-    first = drive(sticky, ("rotate", 4), quality_file=str(kept))
-    assert json.loads(kept.read_text())["least_turn"] > 0.5
-    second = drive(sticky, ("rotate", 4), quality_file=str(kept))
-    assert second.seconds < first.seconds - 0.5, "the dead band need not be searched again"
-    kept.write_text("[1, 2]")
-    assert drive(LATE, ("rotate", 30), quality_file=str(kept)).reason == ""
 
 
 def test_a_robot_in_front_of_a_wall_is_blocked() -> None:

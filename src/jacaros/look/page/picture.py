@@ -5,7 +5,7 @@ It suits light and dark pages, needs no other files, and is identical for identi
 
 import html
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -248,22 +248,12 @@ def _robots(sheet: _Sheet, recording: Recording) -> Iterator[str]:
         )
         yield (
             f'<g transform="translate({x} {y}) rotate({turn}) scale({size})">'
-            f"{_outline(robot, edge)}"
+            f'<circle class="robot" r="1" stroke-width=".12"{edge}/>'
             f'<path class="heading" d="M.72 0L-.38 .5L-.12 0L-.38-.5Z"{inside}/></g>'
         )
         if len(described) > 1:
             name = html.escape(str(robot["name"]))
             yield f'<text class="name" text-anchor="middle" x="{x}" y="{y - size - 8:.1f}">{name}</text>'
-
-
-def _outline(robot: Mapping[str, Any], edge: str) -> str:
-    """Draw a robot of radius 1, facing right."""
-    radius, footprint = robot.get("radius", _RADIUS), robot.get("footprint")
-    if not footprint or not radius:
-        return f'<circle class="robot" r="1" stroke-width=".12"{edge}/>'
-    length, width = round(footprint[0] / radius, 3), round(footprint[1] / radius, 3)
-    place = f'x="{-length / 2}" y="{-width / 2}" width="{length}" height="{width}"'
-    return f'<rect class="robot" {place} stroke-width=".12"{edge}/>'
 
 
 STOPS = ((74, 98, 190), (38, 146, 158), (120, 172, 84), (226, 160, 48), (205, 84, 60))

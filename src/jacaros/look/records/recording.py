@@ -39,7 +39,6 @@ class _Robot(Struct):
 
     name: str
     radius: FiniteNumber = 0.0
-    footprint: Sequence[FiniteNumber] = ()
 
 
 class _Drawing(Struct):

@@ -5,12 +5,9 @@ travels back. `DriveModel` compares the commands that were sent with the speeds 
 delay and the acceleration are simulated side by side; the pair that explains odometry best is used. Lengths are in
 metres, angles in radians, times in seconds."""
 
-import json
 import math
-import os
 from collections import deque
-from dataclasses import asdict, dataclass
-from pathlib import Path
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from jacaros.robots.plane.pose import Pose, clamp, normalised
@@ -195,17 +192,6 @@ class Axis:
         best = min(range(len(SHARES)), key=lambda i: (costs[i], -i))
         self.acceleration = self.declared * SHARES[best]
 
-    def expect(self, lag: int, acceleration: float, least: float) -> None:
-        """Begin with values that were measured earlier; *least* is 0.0 if no dead band was found."""
-        share = min(range(len(SHARES)), key=lambda i: abs(acceleration - SHARES[i] * self.declared))
-        self.costs = [
-            [SEEN * (abs(each - lag) / LAGS + abs(i - share) / len(SHARES)) for each in range(LAGS)]
-            for i in range(len(SHARES))
-        ]
-        self.settle_on(lag)
-        if least:
-            self.lower, self.upper = 0.9 * least, least
-
     def effective(self, wanted: float) -> float:
         """Return the speed that the wheels follow: none below the dead band."""
         return wanted if abs(wanted) > self.lower else 0.0
@@ -338,12 +324,6 @@ class DriveModel:
             self.linear.lower and self.linear.least,
             self.angular.lower and self.angular.least,
         )
-
-    def expect(self, quality: DriveQuality) -> None:
-        """Begin with what was measured earlier, until this run measures something else."""
-        self.delay, self.measured = clamp(quality.delay, self.delay), True
-        self.linear.expect(self._lag(), quality.acceleration, quality.least)
-        self.angular.expect(self._lag(), quality.turn_acceleration, quality.least_turn)
 
     def commanded(self, velocity: Velocity, now: float) -> None:
         """Note a command that is sent now."""
@@ -555,38 +535,3 @@ class DriveModel:
 
 def _changes(old: Pose, new: Pose) -> tuple[float, float, float]:
     return new.x - old.x, new.y - old.y, normalised(new.yaw - old.yaw)
-
-
-# What was measured of a robot, kept in a file for the next run.
-
-
-def read_quality(path: Path) -> DriveQuality | None:
-    """Read a file of `write_quality`; None if it does not exist.
-
-    Raises:
-        ValueError: it is not such a file.
-        OSError: it cannot be read.
-    """
-    if not path.exists():
-        return None
-    try:
-        quality = DriveQuality(
-            **{name: float(value) for name, value in json.loads(path.read_text("utf-8")).items()}
-        )
-    except (ValueError, TypeError, AttributeError) as error:
-        text = f"expected what an earlier run has measured, found something else: {error}"
-        raise ValueError(text) from None
-    if not all(math.isfinite(value) and value >= 0.0 for value in asdict(quality).values()):
-        raise ValueError("expected finite numbers from 0 on")
-    return quality
-
-
-def write_quality(path: Path, quality: DriveQuality) -> None:
-    """Replace the file.
-
-    Raises:
-        OSError: it cannot be written.
-    """
-    part = path.with_name(f"{path.name}.part")
-    part.write_text(json.dumps(asdict(quality), indent=2) + "\n", "utf-8")
-    os.replace(part, path)

@@ -8,7 +8,6 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from typing import ClassVar, NoReturn, Self
 from weakref import WeakKeyDictionary
 
@@ -21,8 +20,6 @@ from jacaros.robots.artifacts.drive_model import (
     DriveModel,
     Limits,
     Velocity,
-    read_quality,
-    write_quality,
 )
 from jacaros.robots.artifacts.maneuver import LEAST_PROGRESS, Maneuver, ProgressChecker, distance
 from jacaros.robots.artifacts.odometry import (
@@ -567,7 +564,6 @@ class WheeledArtifact(RosArtifact):
         unmatched(W): effect of a base that has not subscribed by then: ``warn`` (default; the motion begins) or
             ``fail``, with ``unmatched(Topic)``.
         odometry_frame(F): the only frame in which odometry is accepted; default: that of the first message.
-        quality_file(F): keep what is measured of the robot in this file, for the next run.
         frame(F): the frame of all poses, such as ``map``: motions use odometry corrected by localisation on tf, so
             that errors of slipping wheels do not add up; default: odometry's own frame.
 
@@ -604,7 +600,6 @@ class WheeledArtifact(RosArtifact):
         "odometry_topic": text,
         "odometry_frame": text,
         "frame": text,
-        "quality_file": text,
         **MATCH_OPTIONS,
     }
     robot_in_properties = True
@@ -628,7 +623,6 @@ class WheeledArtifact(RosArtifact):
         self._commands = self.publisher(self.option("command_topic", self.command_topic), TWIST)
         self.matching = self.matching_of(self._commands)
         self.model = DriveModel(self.settings.limits)
-        self._read_quality()
         self.motions.models.append(self.model)
         self.at_dispose(lambda: self.motions.models.remove(self.model))
         topic, frame = self.option("odometry_topic", "odom"), self.option("odometry_frame", "")
@@ -703,7 +697,7 @@ class WheeledArtifact(RosArtifact):
         self.update_property(self.robot_property("moving"), Atom(shown), if_new=True)
 
     def _show_quality(self) -> None:
-        """Show what was measured, and keep it."""
+        """Show what was measured."""
         quality = self.model.quality
         if quality is None:
             return
@@ -716,23 +710,6 @@ class WheeledArtifact(RosArtifact):
         else:
             self.update_property(name, *values)
         self._shown = values
-        if "quality_file" in self.options:
-            try:
-                write_quality(Path(str(self.options["quality_file"])), quality)
-            except OSError as error:
-                self.log(f"warning: what was measured of the robot cannot be kept: {error}")
-
-    def _read_quality(self) -> None:
-        """Begin with what an earlier run has measured."""
-        if "quality_file" not in self.options:
-            return
-        try:
-            quality = read_quality(Path(str(self.options["quality_file"])))
-        except (OSError, ValueError) as error:
-            self.log(f"warning: {self.options['quality_file']}: {error}; the robot is measured anew")
-            return
-        if quality is not None:
-            self.model.expect(quality)
 
     def _halt(self) -> None:
         for motion in list(self._motions):

@@ -7,9 +7,7 @@ and 0.65 m/s it moves 13 mm).
 import math
 from collections.abc import Iterable
 
-from jacaros.robots.plane.pose import Pose
 from jacaros.robots.plane.shapes import Segment
-from jacaros.robots.plane.trigonometry import sine_cosine
 
 CELL = 0.5
 """Side of a cell of the wall index, in metres."""
@@ -73,51 +71,6 @@ def push_out(
             y += ny * nearness
         towards = (-nx, -ny)
     return x, y, towards
-
-
-def push_out_rectangle(
-    pose: Pose, half_length: float, half_width: float, walls: Iterable[Wall]
-) -> tuple[float, float, tuple[float, float] | None]:
-    """Move a rectangle with heading *pose* out of *walls*, by the shortest way (separating axis theorem).
-
-    Returns:
-        The same as `push_out`.
-    """
-    x, y, yaw = pose
-    sine, cosine = sine_cosine(yaw)
-    towards = None
-    for ax, ay, dx, dy, length2 in walls:
-        # The wall in the frame of the rectangle: ahead and to the left of its centre.
-        px, py = (ax - x) * cosine + (ay - y) * sine, (ay - y) * cosine - (ax - x) * sine
-        ex, ey = dx * cosine + dy * sine, dy * cosine - dx * sine
-        length = math.sqrt(length2)
-        depth, to_x, to_y = min(
-            _overlap(px, px + ex, half_length, 1.0, 0.0),
-            _overlap(py, py + ey, half_width, 0.0, 1.0),
-            _across(px * ey - py * ex, half_length * abs(ey) + half_width * abs(ex), length, ey, -ex),
-        )
-        if depth <= -TOUCHING:
-            continue
-        towards = (cosine * to_x - sine * to_y, sine * to_x + cosine * to_y)
-        if depth > 0.0:
-            x -= depth * towards[0]
-            y -= depth * towards[1]
-    return x, y, towards
-
-
-def _overlap(a: float, b: float, half: float, to_x: float, to_y: float) -> tuple[float, float, float]:
-    """Return how far a wall from *a* to *b* extends into -*half* to *half*, and its direction."""
-    ahead, behind = half - min(a, b), max(a, b) + half
-    return (ahead, to_x, to_y) if ahead <= behind else (behind, -to_x, -to_y)
-
-
-def _across(
-    aside: float, reach: float, length: float, normal_x: float, normal_y: float
-) -> tuple[float, float, float]:
-    """Return the same across the wall, whose line is *aside* / *length* away along its normal."""
-    depth = (reach - abs(aside)) / length
-    sign = 1.0 if aside >= 0.0 else -1.0
-    return depth, sign * normal_x / length, sign * normal_y / length
 
 
 Push = tuple[float, float, float, float]

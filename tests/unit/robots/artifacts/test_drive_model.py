@@ -9,7 +9,6 @@ from jacaros.robots.artifacts.drive_model import (
     SHARES,
     Axis,
     DriveModel,
-    DriveQuality,
     Filtered,
     Limits,
     Velocity,
@@ -216,23 +215,11 @@ def test_a_robot_has_come_to_rest_when_nothing_is_on_the_way() -> None:
     assert plant.velocity == Velocity()
 
 
-def test_what_was_measured_earlier_is_used_from_the_start() -> None:
+def test_what_was_measured_is_put_into_words() -> None:
     model = DriveModel(LIMITS)
     assert str(model) == "nothing was measured yet"
-    model.expect(DriveQuality(0.3, 0.4, 2.0, 0.08, 0.5))
-    found = model.quality
-    assert found is not None
-    assert found.delay == 0.3
-    assert found.acceleration == pytest.approx(0.4)
-    assert found.turn_acceleration == pytest.approx(2.0)
-    assert found.least == pytest.approx(0.08)
-    assert model.linear.lower == pytest.approx(0.072)
-    assert "0.30 s of delay" in str(model)
-    assert "0.4 m/s2" in str(model)
-    other = DriveModel(LIMITS)
-    other.expect(DriveQuality(0.3, 0.4, 2.0))
-    assert other.linear.lower == 0.0
-    assert "rolls from" not in str(other)
+    model.delay, model.measured, model.linear.lower = 0.3, True, 0.1
+    assert str(model) == "measured: 0.30 s of delay, 0.8 m/s2, rolls from 0.14 m/s on"
 
 
 # ---- the parts
@@ -312,12 +299,3 @@ def test_a_filtered_coordinate_weighs_noise_against_drift() -> None:
     noisy.measure(5.0)
     assert noisy.value == pytest.approx(6.0, abs=0.02), "it was moved: the new place counts"
     assert noisy.deviation == pytest.approx(noisy.noise, rel=0.01)
-
-
-@pytest.mark.parametrize("lag", [0, 9, 20])
-def test_an_expected_delay_and_acceleration_have_the_least_costs(lag: int) -> None:
-    axis = Axis(0.5, 0.8, 0.02)
-    axis.expect(lag, 0.8 * SHARES[2], 0.0)
-    cheapest = min((cost, i, each) for i, costs in enumerate(axis.costs) for each, cost in enumerate(costs))
-    assert cheapest == (0.0, 2, lag)
-    assert axis.acceleration == pytest.approx(0.8 * SHARES[2])

@@ -3,14 +3,13 @@
 from pathlib import Path
 
 import pytest
-from navigation_lab import Lab, in_world, pose
+from navigation_lab import Lab, pose
 
 from jacaros.robots.ros.action import GoalStatus
 from jacaros.robots.ros.backend import GraphContents
 from jacaros.robots.world import World, WorldError
 from jacaros.robots.world.data.robot import ACTIONS, SERVICES, TOPICS
 from jacaros.runtime.cli.main import call
-from jacaros.runtime.errors import UsageError
 
 FULL = "robots: [{gripper: true, tools: {mop: {removes: [dust]}}}]\n"
 ROVER = """
@@ -106,5 +105,3 @@ def test_mistakes_are_reported_with_their_place(entry: str, problem: str, help: 
         World.load(f"robots:\n  - {{{entry}}}\n")
     assert f"world:{problem}" in str(wrong.value)
     assert help in str(wrong.value)
-
-

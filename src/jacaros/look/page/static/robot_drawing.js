@@ -16,7 +16,7 @@ export function drawRobot(pen, projection, robot, state, { index, named, selecte
   pen.fillStyle = themeColor("surface"); pen.strokeStyle = colour; pen.lineWidth = 2.5;
   outline(pen, robot, size);
   pen.fill(); pen.stroke();
-  drawHeading(pen, robot.footprint ? Math.min(...robot.footprint) * size / robot.radius / 2 : size, colour);
+  drawHeading(pen, size, colour);
   pen.restore();
   if (named || selected) drawName(pen, robot.name, x, y - size - 9);
 }
@@ -65,10 +65,7 @@ export function drawPlan(pen, projection, points, index) {
 
 function outline(pen, robot, size) {
   pen.beginPath();
-  if (robot.footprint) {
-    const [length, width] = robot.footprint.map((metres) => metres * size / robot.radius);
-    pen.rect(-length / 2, -width / 2, length, width);
-  } else pen.arc(0, 0, size, 0, FULL);
+  pen.arc(0, 0, size, 0, FULL);
 }
 
 function drawHeading(pen, size, colour) {

@@ -35,7 +35,7 @@ export class World {
   /** The drawing at time `t`; before the first one, that one: on a real graph it comes late. */
   drawing(t) { return this.drawings.at(t) ?? this.drawings.values[0] ?? EMPTY; }
 
-  /** Description of robot number `index`: name, radius, footprint. */
+  /** Description of robot number `index`: name, radius. */
   robot(index) {
     const drawings = this.drawings.values, known = drawings[drawings.length - 1]?.robots[index];
     return { radius: 0.17, ...known, name: known?.name ?? this.names[index] ?? `robot ${index + 1}` };

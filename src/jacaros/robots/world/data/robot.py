@@ -194,8 +194,7 @@ def absolute(name: str, prefix: str) -> str:
 class RobotDescription:
     """A robot: its name, the namespace of its topics ("" for none), its initial pose and its properties.
 
-    ``footprint`` is the length and width of a rectangular robot; ``radius`` is then that of the circumscribed circle, which
-    other robots, lasers and navigation use. ``gripper_reach`` is the reach of the gripper, in metres from the robot's
+    ``gripper_reach`` is the reach of the gripper, in metres from the robot's
     centre; 0 without a gripper. ``interface`` has the names of its topics, services and actions.
     """
 
@@ -212,9 +211,6 @@ class RobotDescription:
     )
     tools: Annotated[tuple[CleaningTool, ...], FieldSpec("mapping", "cleaning tools by name")] = ()
     gripper_reach: Annotated[float, FieldSpec("mapping or flag", "gripper", "gripper")] = 0.0
-    footprint: Annotated[tuple[float, float] | None, FieldSpec("`[length, width]` m", "of a rectangle")] = (
-        None
-    )
     interface: RobotInterface = EVERYTHING
 
 

@@ -168,10 +168,7 @@ class WorldDescription:
             "docks": [_drawn(dock, "name", "pose", "radius") for dock in self.docks],
             "doors": [_drawn(door, "name", "segment", "open") for door in self.doors],
             "cliffs": [list(cliff) for cliff in self.cliffs],
-            "robots": [
-                _drawn(robot, "name", "pose", "radius", *(("footprint",) if robot.footprint else ()))
-                for robot in self.robots
-            ],
+            "robots": [_drawn(robot, "name", "pose", "radius") for robot in self.robots],
             "objects": [
                 {"name": each.name, "place": [each.x, each.y], **_drawn(each, "radius", "color")}
                 for each in self.objects

@@ -18,7 +18,6 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Any
 
-from jacaros.robots.plane.contact import WallIndex, push_out_rectangle
 from jacaros.robots.plane.pose import Pose
 from jacaros.robots.plane.shapes import Rectangle, Segment
 from jacaros.robots.world.data.robot import RobotDescription
@@ -204,7 +203,7 @@ def place_problem(
     """Return what is wrong with putting a *robot* at *pose*, and a help; both are empty if it fits.
 
     Args:
-        robot: its radius or footprint is used, not its own pose.
+        robot: its radius is used, not its own pose.
         pose: place, in metres and radians.
         world: its boxes, and its bounds if it has border walls.
         solid: walls to consider.
@@ -216,10 +215,6 @@ def place_problem(
         return "outside the world", f"the world is from [{left:g}, {bottom:g}] to [{right:g}, {top:g}]"
     if any(box.contains(x, y) for box in world.boxes):
         return "inside a box", ""
-    if robot.footprint is not None:
-        length, width = robot.footprint
-        fits = _push(robot, pose, walls) <= _TOUCHING
-        return ("", "") if fits else (f"in a wall, with a footprint of {length:g} x {width:g} m", "")
     near = min((wall.distance(x, y) for wall in walls), default=math.inf)
     if near < robot.radius - _TOUCHING:
         return f"in a wall: {near:.2f} m from it, with a radius of {robot.radius:g} m", ""
@@ -228,12 +223,3 @@ def place_problem(
 
 def _has_border(world: WorldDescription) -> bool:
     return set(world.bounds.edges()) <= set(world.segments)
-
-
-def _push(robot: RobotDescription, pose: Pose, walls: Iterable[Segment]) -> float:
-    """Return how far walls push a rectangular robot away, in metres."""
-    assert robot.footprint is not None
-    length, width = robot.footprint
-    near = WallIndex(walls, robot.radius).near(pose.x, pose.y)
-    x, y, _ = push_out_rectangle(pose, 0.5 * length, 0.5 * width, near)
-    return math.dist((x, y), pose[:2])

@@ -9,7 +9,6 @@ robot whose kind lacks it::
       navigate_to_pose: go_to
 """
 
-import math
 import re
 from collections.abc import Mapping
 from dataclasses import replace
@@ -46,24 +45,11 @@ def read_robot(node: YamlNode) -> RobotDescription:
         usual,
         namespace=_namespace,
         pose=_pose,
-        footprint=_footprint,
         navigation=_navigation,
         gripper_reach=_gripper_reach,
         tools=_tools,
     )
-    if "footprint" in given:
-        if "radius" in given:
-            given["radius"].wrong("'radius' and 'footprint' are alternatives", "remove one of them")
-        length, width = described["footprint"]
-        described["radius"] = 0.5 * math.sqrt(length * length + width * width)  # of the circle around it
     return replace(usual, interface=read_interface(given, usual.interface), **described)
-
-
-def _footprint(node: YamlNode, _: object) -> tuple[float, float]:
-    length, width = node.pair()
-    if not (0.04 <= length <= 4.0 and 0.04 <= width <= 4.0):
-        node.wrong("a footprint is from 0.04 to 4 m long and wide", "write [length, width], in metres")
-    return length, width
 
 
 def read_pose(entries: dict[str, YamlNode]) -> Pose:

@@ -5,7 +5,7 @@ import random
 from collections.abc import Callable
 from typing import Any
 
-from jacaros.robots.plane.contact import Push, WallIndex, push_apart, push_out, push_out_rectangle
+from jacaros.robots.plane.contact import Push, WallIndex, push_apart, push_out
 from jacaros.robots.plane.pose import Placement, Pose, clamp, wrap
 from jacaros.robots.plane.shapes import Circle, Rectangle
 from jacaros.robots.plane.trigonometry import sine_cosine
@@ -258,11 +258,7 @@ class Robot:
         near = walls.near(self.x, self.y)
         if not near:
             return False
-        if self.description.footprint is None:
-            x, y, towards = push_out(self.x, self.y, self.description.radius, near)
-        else:
-            length, width = self.description.footprint
-            x, y, towards = push_out_rectangle(self.pose, 0.5 * length, 0.5 * width, near)
+        x, y, towards = push_out(self.x, self.y, self.description.radius, near)
         if towards is None:
             return False
         self._touched[WALL] = self.side(*towards)
