@@ -192,10 +192,9 @@ def test_answers_are_plain_values() -> None:
     assert agent.mind.trail == []
 
 
-def test_intentions_show_their_goals() -> None:
+def test_all_goals_of_an_intention_are_pursued() -> None:
     agent = AgentHarness("!a. !x. +!a <- !b(1). +!b(N) <- do(N). +!x <- do(2).")
     agent.run()
-    assert agent.intentions == [["a", "b(1)"], ["x"]]
     assert sorted(agent.goals) == ["a", "b(1)", "x"]
     agent.assert_pursues_not("c")
 

@@ -119,13 +119,12 @@ def has_display() -> bool:
     return "SSH_CONNECTION" not in os.environ
 
 
-def check_output(path: Path, kind: str, make_folder: bool = False) -> None:
+def check_output(path: Path, kind: str) -> None:
     """Check that an output can be written.
 
     Args:
         path: output file.
         kind: what will be written; a key of `_BEGINNINGS`.
-        make_folder: the folder will be created if it does not exist.
 
     Raises:
         UsageError: the folder does not exist, *path* is a folder or not writable, or a file of another kind exists.
@@ -134,8 +133,6 @@ def check_output(path: Path, kind: str, make_folder: bool = False) -> None:
         if path.is_dir():
             raise usage_error(f"`{path}` is a folder", f"name a file in it for the {kind}")
         if not path.exists():
-            if make_folder:
-                return
             if not path.parent.is_dir():
                 raise usage_error(f"folder does not exist: `{path.parent}`", f"mkdir -p {path.parent}")
             if not os.access(path.parent, os.W_OK):

@@ -31,12 +31,10 @@ class Watchdog:
 
     Args:
         tell: takes a line of the log. Called in the watchdog's thread, because the other one is busy.
-        interval: seconds between two checks.
     """
 
-    def __init__(self, tell: Callable[[str], None], interval: float = INTERVAL) -> None:
+    def __init__(self, tell: Callable[[str], None]) -> None:
         self._tell = tell
-        self._interval = interval
         self._watched = threading.get_ident()
         self._end = threading.Event()
         self._task: FrameType | None = None
@@ -52,7 +50,7 @@ class Watchdog:
         self._end.set()
 
     def _watch(self) -> None:
-        while not self._end.wait(self._interval):
+        while not self._end.wait(INTERVAL):
             frame = sys._current_frames().get(self._watched)
             if self._is_too_long(task_of(frame)):
                 self._complain(current_step(frame))
@@ -69,7 +67,7 @@ class Watchdog:
     def _complain(self, work: str) -> None:
         if work not in self._told:
             self._told.add(work)
-            seconds = self._interval * LOOKS
+            seconds = INTERVAL * LOOKS
             self._tell(
                 f"warning: a step has been running for more than {seconds:g} seconds and blocks all agents: {work}"
             )

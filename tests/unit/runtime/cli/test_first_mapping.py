@@ -206,14 +206,6 @@ def test_names_are_valid_functors(ros_name: str, name: str) -> None:
     assert plain_name(ros_name) == name
 
 
-def test_a_joint_trajectory_action_takes_its_points(types: StoredInterfaces) -> None:
-    text = checked(types, acting(types, "follow", "arm/follow", "odd_msgs/action/Follow"))
-    assert "parameters: [joint_names, points]" in text
-    assert "trajectory.joint_names: $joint_names" in text
-    assert "each: $points" in text
-    assert "fields: {positions: $1, time_from_start: $2}" in text
-
-
 @pytest.mark.parametrize(
     ("type_name", "field"),
     [

@@ -286,14 +286,13 @@ def _filled(types: Interfaces, type_name: str, key: str) -> tuple[list[GivenValu
 
 
 _PLACES = ("geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/Pose", "geometry_msgs/msg/Point")
-_TRAJECTORY_POINT = "trajectory_msgs/msg/JointTrajectoryPoint"
 _OCTETS = ("byte", "char", "int8", "uint8")
 
 
 def _can_be_given(kind: FieldType) -> bool:
     """Return whether an agent can write the list: poses, or numbers and strings, but no covariances or images."""
     if kind.is_message:
-        return kind.base in (*_PLACES, _TRAJECTORY_POINT)
+        return kind.base in _PLACES
     return not kind.fixed and kind.base not in _OCTETS
 
 
@@ -302,8 +301,6 @@ def _list(types: Interfaces, name: str, kind: FieldType) -> tuple[GivenValue, li
     if not kind.is_message:
         value = list_of(name, kind)
         return value, [f"  {name}: {value.as_value}"]
-    if kind.base == _TRAJECTORY_POINT:
-        return _trajectory(name)
     elements = values_of(types, kind.base)
     comment = f"a list of {_call('place', elements).partition(':')[0]}"
     lines = [
@@ -312,16 +309,6 @@ def _list(types: Interfaces, name: str, kind: FieldType) -> tuple[GivenValue, li
         f"    fields: {{{_elements(types, kind.base, elements)}}}",
     ]
     return GivenValue(name, name.lower(), "", Unit(comment)), lines
-
-
-def _trajectory(path: str) -> tuple[GivenValue, list[str]]:
-    """Return a parameter for the points of a joint trajectory, which has no effect without points."""
-    lines = [
-        f"  {path}:   # in the order of the joints: radians, or metres for a prismatic joint",
-        "    each: $points",
-        "    fields: {positions: $1, time_from_start: $2}",
-    ]
-    return GivenValue(path, "points", "", Unit("a list of point(Positions, Seconds)")), lines
 
 
 def _elements(types: Interfaces, type_name: str, values: Sequence[GivenValue]) -> str:

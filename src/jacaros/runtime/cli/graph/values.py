@@ -148,18 +148,9 @@ def values_of(types: Interfaces, type_name: str) -> list[GivenValue]:
     return _with_own_names(list(_walk(types, type_name, "", "")))
 
 
-_TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"
-
-
 def lists_of(types: Interfaces, type_name: str) -> list[tuple[str, FieldType]]:
-    """Return the list fields of a message, and those of a joint trajectory in it."""
-    found = []
-    for name, kind in types.fields(type_name).items():
-        if kind.array:
-            found.append((name, kind))
-        elif kind.base == _TRAJECTORY:
-            found += [(f"{name}.{inner}", each) for inner, each in lists_of(types, kind.base)]
-    return found
+    """Return the list fields of a message."""
+    return [(name, kind) for name, kind in types.fields(type_name).items() if kind.array]
 
 
 def list_of(path: str, kind: FieldType) -> GivenValue:

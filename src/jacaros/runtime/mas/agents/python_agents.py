@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from functools import partial
 from inspect import isawaitable
 from types import ModuleType
-from typing import Any, Final
+from typing import Any
 
 from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.agents.language.loader import parse_literals
@@ -384,18 +384,6 @@ class TaskActivity(OperationAccount):
         return not self._others and any(task not in self._waiting for task in self._own)
 
 
-_OF_MINDS: Final = (
-    "events",
-    "intBels",
-    "nrcbp",
-    "rule_depth",
-    "goal_depth",
-    "urgency",
-    "tro",
-)
-"""Options of a mind, which a Python agent does not have."""
-
-
 def agent_class(modules: ProjectModules, spec: AgentSpec) -> type[PythonAgent]:
     """Return the class of an agent: the one in its file, the one that the project names, or the one with the agent's name.
 
@@ -458,26 +446,17 @@ def _classes(module: ModuleType) -> dict[str, type[PythonAgent]]:
 def check_python_agent(
     modules: ProjectModules, spec: AgentSpec, warn: Callable[[Diagnostic], object]
 ) -> None:
-    """Check the class of an agent, and warn about options without effect.
+    """Check the class of an agent, and warn about goals, which have no effect.
 
     Raises:
         ProjectError: the class cannot be found.
     """
-    for what in _without_effect(spec):
-        message = f"{what} of agent `{spec.declared_name}` has no effect: it is a Python agent"
+    if spec.goals.strip():
+        message = f"`goals` of agent `{spec.declared_name}` has no effect: it is a Python agent"
         warn(Diagnostic("warning", message, spec.span))
     if spec.name == DIRECTORY_NAME:
         raise _wrong(spec, "the directory facilitator `df` cannot be a Python agent")
     agent_class(modules, spec)
-
-
-def _without_effect(spec: AgentSpec) -> Sequence[str]:
-    found = [f"the option `{option}`" for option in _OF_MINDS if option in spec.options]
-    if spec.goals.strip():
-        found.append("`goals`")
-    if any(focus.namespace for focus in spec.focus):
-        found.append("the namespace of a focus")
-    return found
 
 
 def make_python_agent(modules: ProjectModules, spec: AgentSpec, run: Run, seed: str) -> PythonAgentHost:

@@ -289,14 +289,6 @@ class Mas:
         """Pauses and steps the run, and sets breakpoints."""
         return self._open.debugger
 
-    def reload(self) -> list[str]:
-        """Read changed programs again, and replace plans and rules. See `jacaros.runtime.mas.debugging.Debugger.reload`.
-
-        Raises:
-            AslError: a program has errors; nothing has been replaced.
-        """
-        return self._open.debugger.reload()
-
     # ---- time
 
     @property
@@ -319,13 +311,13 @@ class Mas:
 
     def add_agent(
         self,
-        name: str | AgentSpec,
+        name: str,
         program: "str | Path | type[PythonAgent] | None" = None,
         *,
         beliefs: str = "",
         goals: str = "",
         join: Iterable[str] = (),
-        focus: "Iterable[str | FocusSpec | ArtifactId]" = (),
+        focus: "Iterable[str | ArtifactId]" = (),
         options: Mapping[str, str] | None = None,
         agent_class: str | None = None,
         stored: Mapping[str, Any] | None = None,
@@ -333,7 +325,7 @@ class Mas:
         """Create and start an agent. It has its first turn when the caller awaits something.
 
         Args:
-            name: name of the agent; or its declaration, as in project files.
+            name: name of the agent.
             program: its program as text; the path of a file (``.asl`` or ``.py``); or the class of a Python agent.
                 Default: the file ``NAME.asl``.
             beliefs: further initial beliefs, as text, separated by commas.
@@ -355,23 +347,18 @@ class Mas:
             RunEnded: the run has ended.
         """
         system = self._open
-        if isinstance(name, AgentSpec):
-            spec, written = name, None
-        else:
-            python_class = program if isinstance(program, type) else None
-            written = program if isinstance(program, str) else None
-            spec = AgentSpec(
-                name,
-                self._source_of(name, program),
-                name,
-                options=dict(options or {}),
-                beliefs=beliefs,
-                goals=goals,
-                join=tuple(join),
-                focus=tuple(map(_focus, focus)),
-                agent_class=agent_class,
-                python_class=python_class,
-            )
+        spec = AgentSpec(
+            name,
+            self._source_of(name, program),
+            name,
+            options=dict(options or {}),
+            beliefs=beliefs,
+            goals=goals,
+            join=tuple(join),
+            focus=tuple(map(_focus, focus)),
+            agent_class=agent_class,
+            python_class=program if isinstance(program, type) else None,
+        )
         if not spec.name.isprintable() or not spec.name or " " in spec.name:
             raise UsageError(
                 f"invalid agent name {spec.name!r}: it must not be empty or have spaces or control characters"
@@ -380,7 +367,7 @@ class Mas:
             raise UsageError(f"duplicate agent name `{spec.name}`")
         if spec.join or spec.focus:
             spec = _placed(spec, self._run_environment.environment)
-        tree = system.lifecycle.programs.load(spec, written)
+        tree = system.lifecycle.programs.load(spec, program if isinstance(program, str) else None)
         host = system.lifecycle.add(spec, tree)
         agent = self.agent(spec.name)
         if stored is None:
@@ -580,9 +567,7 @@ def _deployment(
     return mapped(declared, mappings)
 
 
-def _focus(wanted: "str | FocusSpec | ArtifactId") -> FocusSpec:
-    if isinstance(wanted, FocusSpec):
-        return wanted
+def _focus(wanted: "str | ArtifactId") -> FocusSpec:
     if isinstance(wanted, str):
         workspace, _, name = wanted.rpartition("/")
         return FocusSpec(name, workspace or None)
@@ -598,8 +583,8 @@ def _placed(spec: AgentSpec, environment: "Environment") -> AgentSpec:
     from jacaros.runtime.mas.environment import artifact_of, path_of
 
     join = tuple(path_of(environment, path) for path in spec.join)
-    found = [(artifact_of(environment, each), each.namespace) for each in spec.focus]
-    focus = tuple(FocusSpec(artifact.name, artifact.workspace, namespace) for artifact, namespace in found)
+    found = [artifact_of(environment, each) for each in spec.focus]
+    focus = tuple(FocusSpec(artifact.name, artifact.workspace) for artifact in found)
     return replace(spec, join=join, focus=focus)
 
 

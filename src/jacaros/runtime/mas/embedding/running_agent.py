@@ -6,14 +6,14 @@ from contextlib import closing
 from typing import Any
 
 from jacaros.agents.body.values import to_value
-from jacaros.agents.language.loader import parse_formula, parse_literal, parse_term
+from jacaros.agents.language.loader import parse_formula, parse_literal
 from jacaros.agents.language.lowering import Variables, lower_value
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules import belief_update, goals
 from jacaros.agents.mind.rules.failure import told
 from jacaros.agents.mind.rules.failure_reason import loss_of
 from jacaros.agents.mind.rules.goals import WatchedCondition, WatchedGoal
-from jacaros.agents.mind.state.act import Percept, SpeechAct
+from jacaros.agents.mind.state.act import Percept
 from jacaros.agents.mind.state.belief_base import parts
 from jacaros.agents.mind.storage import stored
 from jacaros.agents.terms.order import annotation_set
@@ -175,15 +175,6 @@ class OpenMind:
         """Return all goals that it pursues or is about to pursue, as text without annotations."""
         return [text(bare(goal)) for goal, _ in goals.desires(self.mind)]
 
-    @property
-    def intentions(self) -> list[list[str]]:
-        """Return the goals of each intention, the first one first, as text without annotations."""
-        stacks = [
-            [text(bare(goal)) for goal in reversed(goals.goal_literals(intention))]
-            for intention in self.mind.alive.values()
-        ]
-        return [stack for stack in stacks if stack]
-
 
 def _replace(mind: Mind, term: Term) -> None:
     symbol, _, annotations = parts(term)
@@ -285,16 +276,6 @@ class RunningAgent(OpenMind):
     def ended(self) -> bool:
         """Whether it has ended: killed, or with the run."""
         return self._host.ended
-
-    def receive(self, sender: str, performative: str, content: str) -> None:
-        """Deliver a message to it as if *sender* had sent it: ``bob.receive("boss", "achieve", "clean(kitchen)")``.
-
-        Raises:
-            AslError: the content is not a term.
-        """
-        mind = self.mind
-        term = lower_value(parse_term(content))
-        self._host.receive(SpeechAct(performative, sender, self.name, term, mind.next_message_id()))
 
     def achieve(self, goal: str) -> "Goal":
         """Give it a goal, with an intention of its own. Await the returned goal to wait until it is achieved.

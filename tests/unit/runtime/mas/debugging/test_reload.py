@@ -68,7 +68,7 @@ async def test_plans_and_rules_are_replaced_and_beliefs_and_intentions_kept(
     assert bob.believes("big(4)")
     new = OLD.replace("(old", "(new").replace("X > N", "X > N + 10")
     write(file, f"{new}+!more <- .print(more).\nsize(4).\n!more.\n")
-    told = mas.reload()
+    told = mas.debugger.reload()
     assert f"agent bob: intention 1 continues with its old plan +!go ({file}:4)" in told
     assert "agent bob: 1 plan removed, 2 new, 1 unchanged" in told
     assert "agent ann: 1 plan removed, 2 new, 1 unchanged" in told
@@ -91,16 +91,16 @@ async def test_a_wrong_or_unchanged_program_replaces_nothing(mas: Mas, file: Pat
     await mas.sleep(0.5)
     library = mas.agent("bob").mind.library
     plans = library.plans
-    assert mas.reload() == [NOTHING]
+    assert mas.debugger.reload() == [NOTHING]
     assert mas.agent("bob").mind.library is library
     write(file, OLD.replace("old, end", "old, end("))
     with pytest.raises(AslError, match=r"robot.asl:5"):
-        mas.reload()
+        mas.debugger.reload()
     assert mas.agent("bob").mind.library.plans is plans
     mas.add_agent("third", file)
     write(file, None)
     with pytest.raises(AslError):
-        mas.reload()
+        mas.debugger.reload()
     await mas.sleep(1.0)
     assert lines == ["old", "oldend", "old"]
 
@@ -116,14 +116,14 @@ async def test_plans_of_run_time_stay_and_removed_ones_stay_away(mas: Mas, file:
     bob.mind.add_plan(String("+!d <- .print(own)."))
     bob.mind.add_plan(String("+!c <- .print(first)."), first=True)
     write(file, ABC.replace("print(b)", "print(newb)"))
-    mas.reload()
+    mas.debugger.reload()
     for goal in ("b", "c", "d"):
         await bob.achieve(goal)
     lost = bob.achieve("a")
     await mas.until_idle()
     assert lost.failed
     write(file, ABC.replace("print(a)", "print(newa)"))
-    mas.reload()
+    mas.debugger.reload()
     for goal in ("a", "b", "c", "d"):
         await bob.achieve(goal)
     assert lines == ["c", "newb", "first", "own", "newa", "b", "first", "own"]
@@ -134,10 +134,10 @@ async def test_a_changed_file_that_is_included_counts(mas: Mas, file: Path, line
     part = file.with_name("part.asl")
     write(part, "+!a <- .print(one).")
     write(file, '{ include("part.asl") } ready.')
-    mas.reload()
+    mas.debugger.reload()
     await mas.agent("bob").achieve("a")
     write(part, "+!a <- .print(two).")
-    assert mas.reload() != [NOTHING]
+    assert mas.debugger.reload() != [NOTHING]
     await mas.agent("bob").achieve("a")
     assert lines == ["one", "two"]
 
@@ -147,7 +147,7 @@ async def test_a_reload_in_the_middle_of_a_step_waits_for_its_end(mas: Mas, file
     def printed(agent: str, text: str) -> None:
         if (agent, text) == ("bob", "reload"):
             write(file, file.read_text("utf-8").replace("print(old)", "print(new)"))
-            mas.reload()
+            mas.debugger.reload()
 
     mas.on_print(printed)
     await mas.until_idle()
@@ -157,7 +157,7 @@ async def test_a_reload_in_the_middle_of_a_step_waits_for_its_end(mas: Mas, file
 async def test_a_breakpoint_in_a_reloaded_file_stops_at_its_new_line(mas: Mas, file: Path) -> None:
     await mas.sleep(0.5)
     write(file, "// one more line\n" + OLD)
-    mas.reload()
+    mas.debugger.reload()
     mas.debugger.add_breakpoint({"line": {"file": "robot.asl", "line": 6}})
     state = await mas.debugger.wait_until_paused()
     assert (state.line, mas.clock.elapsed) == (6, 1.0)
@@ -173,7 +173,7 @@ async def test_records_name_the_plans_of_the_reloaded_program(mas: Mas, file: Pa
     await mas.sleep(0.5)
     write(file, "// one more line\n" + OLD.replace("(old", "(new"))
     mas.debugger.pause()
-    mas.reload()
+    mas.debugger.reload()
     heads = [source["text"].splitlines()[0] for source in records("source")]
     assert heads == ["size(3).", "// one more line"]
     mas.debugger.resume()

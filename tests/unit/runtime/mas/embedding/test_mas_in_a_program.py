@@ -14,7 +14,7 @@ from jacaros.agents.language.diagnostics import AslError
 from jacaros.artifacts import OperationFailed, Out
 from jacaros.runtime.clock import VirtualClock, WallClock, clock_of, new_event_loop
 from jacaros.runtime.errors import UsageError
-from jacaros.runtime.mas.deployment import AgentSpec, FocusSpec, ProjectError
+from jacaros.runtime.mas.deployment import ProjectError
 from jacaros.runtime.mas.embedding.waits import RunEnded, UnknownAgent
 
 
@@ -29,18 +29,17 @@ async def test_an_agent_from_a_text_achieves_a_goal(mas: Mas, lines: list[str]) 
     assert mas.exit_code == 0
 
 
-async def test_agents_come_from_files_and_specs(mas: Mas, lines: list[str], tmp_path: Path) -> None:
+async def test_agents_come_from_files(mas: Mas, lines: list[str], tmp_path: Path) -> None:
     program = tmp_path / "ann.asl"
     program.write_text("!go. +!go : p(X) <- .print(X).", encoding="utf-8")
     mas.add_agent("ann", beliefs="p(1)")
     mas.add_agent("second", program, beliefs="p(2)")
-    mas.add_agent(AgentSpec("third", program, beliefs="p(3)"))
-    assert [agent.name for agent in mas.agents] == ["ann", "second", "third"]
+    assert [agent.name for agent in mas.agents] == ["ann", "second"]
     await mas.until_idle()
-    assert lines == ["[ann] 1", "[second] 2", "[third] 3"]
+    assert lines == ["[ann] 1", "[second] 2"]
     program.write_text("+!greet <- .print(hi).", encoding="utf-8")
     await mas.add_agent("bob", '{ include("ann.asl") }').achieve("greet")
-    assert lines[3:] == ["[bob] hi"], "a program in a text includes files of the folder"
+    assert lines[2:] == ["[bob] hi"], "a program in a text includes files of the folder"
 
 
 def test_a_project_runs_inside_a_program(tmp_path: Path) -> None:
@@ -78,7 +77,7 @@ async def test_artifacts_are_made_focused_and_used(mas: Mas) -> None:
     assert bob.ask("doubled(X)") == {"X": 8}
 
 
-async def test_focus_takes_names_paths_and_specs(mas: Mas) -> None:
+async def test_focus_takes_names_and_paths(mas: Mas) -> None:
     mas.create_workspace("lab")
     for workspace in ("/main", "lab"):
         await mas.make_artifact("counter", Counter, [len(workspace)], workspace=workspace)
@@ -86,7 +85,6 @@ async def test_focus_takes_names_paths_and_specs(mas: Mas) -> None:
         ("a", "counter", 5),
         ("b", "lab/counter", 3),
         ("c", "/main/lab/counter", 3),
-        ("d", FocusSpec("counter", "lab"), 3),
     ):
         agent = mas.add_agent(name, "!look. +!look : count(X) <- +seen(X).", focus=[wanted])
         assert await agent.until("seen(X)", timeout=1) == {"X": count}
