@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 from jacaros.robots.map.cells import Cell
 from jacaros.robots.plane.path import cheapest_path
-from jacaros.robots.plane.pose import Pose, normalised
+from jacaros.robots.plane.pose import Point, Pose, normalised
+from jacaros.robots.plane.pose_search import disc
 
 
 def route(free: Collection[Cell], start: Cell, goal: Cell) -> list[Cell] | None:
@@ -62,21 +63,13 @@ def inflated(passable: set[Cell], blocked: Collection[Cell], radius: float, here
     """
     if radius <= 0.0:
         return passable
-    disc = offsets(radius)
-    near = {(x + dx, y + dy) for x, y in blocked for dx, dy in disc}
+    near = {(x + dx, y + dy) for dx, dy in disc(radius) for x, y in blocked}
     wide = passable - near
     if here not in wide:
         x, y = here
-        around = {(x + dx, y + dy) for dx, dy in offsets(2.0 * radius)}
+        around = {(x + dx, y + dy) for dx, dy in disc(2.0 * radius)}
         wide |= passable & around
     return wide
-
-
-def offsets(radius: float) -> list[Cell]:
-    """Return the cells of a disc around 0, 0; *radius* in cells."""
-    reach = math.floor(radius)
-    span = range(-reach, reach + 1)
-    return [(dx, dy) for dx in span for dy in span if math.hypot(dx, dy) <= radius]
 
 
 # Straight legs of a route, for a robot that turns on the spot and drives straight ahead.
@@ -131,6 +124,24 @@ def _clear(pose: Pose, x: float, y: float, free: Collection[Cell], size: float) 
         if cell != here and cell not in free:
             return False
     return True
+
+
+def open_ground(echoes: Collection[Point], radius: float, longest: float) -> tuple[float, float]:
+    """Return the turn (radians) and the distance (metres) of the longest drive straight ahead that a scan shows to be free.
+
+    Args:
+        echoes: positions in the frame of the robot.
+        radius: clearance of the robot, in metres.
+        longest: maximum distance, in metres.
+    """
+    best = (0.0, 0.0)
+    for number in sorted(range(-11, 13), key=abs):
+        turn = math.tau * number / 24.0
+        ahead = Pose(0.0, 0.0, -turn).points(echoes)
+        metres = min((x for x, y in ahead if x > 0.0 and abs(y) < radius), default=math.inf) - radius
+        if min(metres, longest) > best[1]:
+            best = (turn, min(metres, longest))
+    return best
 
 
 # Frontier exploration: the border between known free ground and unknown ground (Yamauchi 1997).

@@ -4,6 +4,7 @@ Lengths are in metres, angles in radians, positive counter-clockwise.
 """
 
 import math
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from jacaros.robots.plane.trigonometry import PI, sine_cosine
@@ -31,6 +32,11 @@ class Pose(NamedTuple):
     def point(self, x: float, y: float) -> Point:
         """Transform a point of this frame to the outer frame."""
         return self._placement().point(x, y)
+
+    def points(self, points: Iterable[Point]) -> list[Point]:
+        """Transform points of this frame to the outer frame."""
+        x, y, sine, cosine = self.x, self.y, math.sin(self.yaw), math.cos(self.yaw)
+        return [(x + cosine * a - sine * b, y + sine * a + cosine * b) for a, b in points]
 
     def local(self, x: float, y: float) -> Point:
         """Transform a point of the outer frame to this frame: metres ahead, and to the left."""
