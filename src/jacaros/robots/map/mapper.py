@@ -2,11 +2,13 @@
 
 import math
 from collections import deque
-from collections.abc import Collection
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from jacaros.robots.map.cells import Cell, OccupancyCells
+from jacaros.robots.map.doubt import PROBABLE, SURE, Doubt
+from jacaros.robots.map.place_search import PlaceSearch
 from jacaros.robots.map.scan_matching import Surfaces, match
 from jacaros.robots.plane.pose import ORIGIN, Point, Pose, normalised
 
@@ -88,13 +90,7 @@ def _beside(reading: float, before: float, sine: float, cosine: float, near: flo
 
 def moved(scan: Scan, pose: Pose) -> Scan:
     """Convert a scan to map coordinates, for a robot at *pose*."""
-    sine, cosine = math.sin(pose.yaw), math.cos(pose.yaw)
-    x, y = pose.x, pose.y
-
-    def all_of(points: list[Point]) -> list[Point]:
-        return [(x + cosine * a - sine * b, y + sine * a + cosine * b) for a, b in points]
-
-    return Scan(pose.point(*scan.origin), all_of(scan.echoes), all_of(scan.clear))
+    return Scan(pose.point(*scan.origin), pose.points(scan.echoes), pose.points(scan.clear))
 
 
 # The pose of a robot on the map: its odometry, and a correction.
@@ -130,17 +126,23 @@ class Localisation:
 
     def pose_at(self, stamp: float) -> Pose | None:
         """Return the pose on the map at *stamp* (0.0: now), the nearest known one; None before the first odometry."""
-        found = self._odometry_at(stamp)
+        found = self.odometry_at(stamp)
         return None if found is None else self.correction.then(found)
 
     def correct(self, stamp: float, pose: Pose) -> None:
         """Correct the pose: the robot was at *pose* on the map at *stamp*. No effect before the first odometry."""
-        found = self._odometry_at(stamp)
+        found = self.odometry_at(stamp)
         if found is not None:
-            self.correction = pose.then(found.inverse())
-            self.pose = self.correction.then(self._odometry[-1][1])
+            self.place(pose.then(found.inverse()))
 
-    def _odometry_at(self, stamp: float) -> Pose | None:
+    def place(self, correction: Pose) -> None:
+        """Set the correction."""
+        self.correction = correction
+        if self._odometry:
+            self.pose = correction.then(self._odometry[-1][1])
+
+    def odometry_at(self, stamp: float) -> Pose | None:
+        """Return the pose according to odometry at *stamp*, as `pose_at`."""
         if not self._odometry:
             return None
         later_stamp, later = self._odometry[-1]
@@ -173,9 +175,14 @@ STOOD = 2.0
 MATCHED = 120
 """Approximate number of points of a scan that are matched."""
 
+HARDLY_ANY, DOUBTED = 99.0, 0.5
+"""Quality of the pose below which a robot that stands looks again after the second number, in seconds."""
+
 
 class Mapper:
     """Add scans to a grid, each from the robot's pose at its time.
+
+    A scan that does not match the map changes neither the map nor the pose, but raises doubt about the pose.
 
     Args:
         cells: the grid.
@@ -184,35 +191,44 @@ class Mapper:
 
     Attributes:
         localisation: the robot's pose.
+        matching: as given.
+        doubt: how sure the robot is of its pose, if scans are matched.
+        search: the search of the robot for its place; None if it does not search. Meanwhile no scan is added.
     """
 
     def __init__(self, cells: OccupancyCells, options: ScanOptions, matching: bool) -> None:
         self.localisation = Localisation()
-        self._cells, self._options, self._matching = cells, options, matching
+        self.matching, self.doubt = matching, Doubt(cells)
+        self.search: PlaceSearch | None = None
+        self._cells, self._options = cells, options
         self._surfaces = Surfaces()
         self._last: tuple[float, Pose] | None = None
+        self._newest: tuple[float, Any] = (0.0, None)
 
     def take_scan(self, stamp: float, message: Any) -> bool:
         """Take a ``sensor_msgs/msg/LaserScan`` with the time *stamp*, in seconds.
 
         Returns:
-            Whether it was added to the map: not before the first odometry, and not if the robot has not moved.
+            Whether it was added to the map: not before the first odometry, not if the robot has not moved, and not while
+            the robot's place is in doubt.
         """
+        self._newest = (stamp, message)
         pose = self.localisation.pose_at(stamp)
-        if pose is None or not self._is_news(stamp, pose):
+        if pose is None or self.search is not None or not self._is_news(stamp, pose):
             return False
         scan = read_scan(message, self._options)
-        if self._matching:
-            every = max(1, len(scan.echoes) // MATCHED)
-            found = match(self._surfaces, scan.echoes[::every], pose) if self._surfaces else None
-            if found is not None:
-                pose = found
-                self.localisation.correct(stamp, pose)
+        self._last = (stamp, pose)
+        if self.matching and self._surfaces:
+            echoes = _some(scan.echoes)
+            pose = match(self._surfaces, echoes, pose) or pose
+            if not self.doubt.confirms(stamp, pose.points(echoes)):
+                return False
+            self.localisation.correct(stamp, pose)
+            self._last = (stamp, pose)
         scan = moved(scan, pose)
         self._cells.add_scan(scan.origin, scan.echoes, scan.clear)
-        if self._matching:
+        if self.matching:
             self._surfaces.add(scan.echoes)
-        self._last = (stamp, pose)
         return True
 
     def _is_news(self, stamp: float, pose: Pose) -> bool:
@@ -222,12 +238,52 @@ class Mapper:
         return (
             math.dist(last[:2], pose[:2]) >= DRIVEN
             or abs(normalised(pose.yaw - last.yaw)) >= TURNED
-            or not 0.0 <= stamp - before < STOOD
+            or not 0.0 <= stamp - before < (STOOD if self.doubt.quality > HARDLY_ANY else DOUBTED)
         )
+
+    def newest_scan(self) -> Scan | None:
+        """Return the newest scan; None before the first one."""
+        message = self._newest[1]
+        return None if message is None else read_scan(message, self._options)
 
     def begin_with(self, obstacles: Collection[Cell]) -> None:
         """Forget earlier scans, and match later ones with *obstacles*, such as those of a loaded map."""
         size = self._cells.size
         self._surfaces = Surfaces()
         self._surfaces.add((x * size, y * size) for x, y in sorted(obstacles))
-        self._last = None
+        self._last = self.search = None
+        self.doubt.begin(SURE)
+
+    # ---- the robot does not know its place
+
+    def begin_search(self, quality: float = 0.0, about: Pose | None = None) -> PlaceSearch:
+        """Look for the robot's place, near the pose *about* if it is given; *quality* is that of the pose until then."""
+        self.doubt.begin(quality)
+        self.search = PlaceSearch(self._cells, self._surfaces, self._options.longest, about)
+        return self.search
+
+    def search_is_due(self) -> bool:
+        """Return whether the search needs the newest scan."""
+        odometry = None if self.search is None else self.localisation.odometry_at(self._newest[0])
+        return self.search is not None and odometry is not None and self.search.is_due(odometry)
+
+    def search_steps(self) -> Iterator[None]:
+        """Continue the search with the newest scan, in short steps; it ends when one place is left."""
+        stamp = self._newest[0]
+        search, scan, odometry = self.search, self.newest_scan(), self.localisation.odometry_at(stamp)
+        if search is None or scan is None or odometry is None:
+            return
+        yield from search.steps(_some(scan.echoes), odometry)
+        if search is self.search and len(search.places) == 1:
+            self.end_search(search.places[0][1])
+
+    def end_search(self, correction: Pose) -> None:
+        """Set the pose of odometry on the map; the scans that follow confirm it or not."""
+        self.search = self._last = None
+        self.localisation.place(correction)
+        self.doubt.begin(PROBABLE)
+
+
+def _some(echoes: Sequence[Point]) -> Sequence[Point]:
+    """Return about `MATCHED` of the echoes."""
+    return echoes[:: max(1, len(echoes) // MATCHED)]

@@ -11,8 +11,8 @@ from jacaros.robots.kit.reading import Reading, Stamps
 from jacaros.robots.map.cells import Cell, LabelledCells, OccupancyCells
 from jacaros.robots.map.map_files import OccupancyGrid
 from jacaros.robots.map.mapper import Mapper, ScanOptions
+from jacaros.robots.map.posed_map import PosedMap
 from jacaros.robots.map.routes import Leg, around, frontier, nearest, next_leg
-from jacaros.robots.map.slam_data import ArtSlamData
 from jacaros.robots.plane.pose import ORIGIN, Pose
 from jacaros.robots.ros.message import to_seconds
 from jacaros.robots.ros.node import Sample
@@ -40,7 +40,7 @@ def mount(value: object) -> Pose:
     return Pose(x, y, math.radians(degrees))
 
 
-class ArtMap(ArtSlamData):
+class ArtMap(PosedMap):
     """A map built from a robot's laser scans or from ``/map``, with the robot on it.
 
     The centre of cell X, Y is X and Y times the size of a cell from the origin. Whether a cell is free or an obstacle
@@ -65,6 +65,12 @@ class ArtMap(ArtSlamData):
         things(true): show recognised things from ``/jason/perception``, in the form of `ArtPerception`: the texts are
             name, metres ahead, and metres to the left. A thing stays where it was last seen.
         scan_topic(T), odometry_topic(T), map_topic(T), amcl_topic(T): other topics.
+
+    Properties:
+        localised(Quality): with ``pose_from(scans)``: how sure the robot is of its pose, in percent; 100 if nine of ten
+            echoes lie on obstacles of the map, 0 if half of them do.
+        lost: the quality has fallen below 50, and not risen above 70 since. Scans then change neither the map nor the
+            pose.
     """
 
     known_options: ClassVar = {
@@ -93,7 +99,7 @@ class ArtMap(ArtSlamData):
         source = self.option("source", "scan")
         pose_from = self.option("pose_from", "amcl" if source == "map" else "scans")
         options = ScanOptions(self.option("max_range", 4.0), self.option("laser", ORIGIN), self.size)
-        self._mapper = Mapper(self._seen, options, pose_from == "scans")
+        self.mapper = Mapper(self._seen, options, pose_from == "scans")
         self._listen_for_cells(source)
         self._listen_for_poses(pose_from)
 
@@ -126,7 +132,7 @@ class ArtMap(ArtSlamData):
 
     def _take_odometry(self, odometry: Odometry) -> None:
         stamp = to_seconds(odometry.sample.message.header.stamp) or odometry.sample.stamp
-        self._mapper.localisation.take_odometry(stamp, odometry.pose)
+        self.mapper.localisation.take_odometry(stamp, odometry.pose)
         self._locate(odometry.sample)
 
     def _take_scan(self, sample: Sample) -> None:
@@ -134,13 +140,14 @@ class ArtMap(ArtSlamData):
         stamp = to_seconds(message.header.stamp)
         if not self._header.accept(stamp, sample.stamp, message.header.frame_id):
             return
-        if self._mapper.take_scan(stamp or sample.stamp, message):
+        if self.mapper.take_scan(stamp or sample.stamp, message):
             self._first.take((True,))
             self._locate(sample)
+        self.heed_doubt(sample.cause)
 
     def _take_pose(self, sample: Sample) -> None:
         message = sample.message
-        self._mapper.localisation.correct(to_seconds(message.header.stamp), Pose.of(message.pose.pose))
+        self.mapper.localisation.correct(to_seconds(message.header.stamp), Pose.of(message.pose.pose))
         self._locate(sample)
 
     def _take_map(self, sample: Sample) -> None:
@@ -156,7 +163,7 @@ class ArtMap(ArtSlamData):
         self.start(self.update_object, name, *self._seen.cell_at(pose.x, pose.y), cause=sample.cause)
 
     def _take_things(self, sample: Sample) -> None:
-        pose = self._mapper.localisation.pose
+        pose = self.mapper.localisation.pose
         if pose is None:
             return
         for recognised in sample.message.perception:
@@ -170,7 +177,7 @@ class ArtMap(ArtSlamData):
 
     def _locate(self, sample: Sample) -> None:
         """Update the robot's position; if it has entered another cell, update the properties."""
-        pose = self._mapper.localisation.pose
+        pose = self.mapper.localisation.pose
         if pose is None:
             return
         self.heading = math.degrees(pose.yaw)
@@ -182,17 +189,12 @@ class ArtMap(ArtSlamData):
     def show_surroundings(self) -> None:
         """Show the robot's cell, and the obstacles in view."""
         self._showing = False
-        pose = self._mapper.localisation.pose
+        pose = self.mapper.localisation.pose
         if pose is not None:
             self.stand(self._seen.cell_at(pose.x, pose.y), math.degrees(pose.yaw), 0.0)
         view = math.floor(self.option("view", 0.0) / self.size)
         if view:
             self.show_obstacles(self._seen.near(self.here, view))
-
-    @property
-    def driven(self) -> float:
-        """Metres driven so far, according to odometry."""
-        return self._mapper.localisation.driven
 
     # ---- destinations
 
@@ -202,11 +204,9 @@ class ArtMap(ArtSlamData):
         drive.
 
         A leg ends where the route bends, or after ``leg(M)`` metres. At the end of the route both are 0. Fails with
-        ``no_route`` before the first route, and with ``no_odometry`` while the robot's pose is unknown.
+        ``no_route`` before the first route, with ``no_odometry`` while the robot's pose is unknown, and with ``lost``.
         """
-        pose = self._mapper.localisation.pose
-        if pose is None:
-            self.fail("no odometry has arrived", "no_odometry")
+        pose = self.known_pose()
         if not self.way:
             self.fail("no route: call getRoute first", "no_route")
         longest = self.option("leg", 1.0)
@@ -237,4 +237,4 @@ class ArtMap(ArtSlamData):
     def begin_with_map(self) -> None:
         """Match scans with the present map."""
         self._done.clear()
-        self._mapper.begin_with(self.cells.blocked())
+        self.mapper.begin_with(self.cells.blocked())
