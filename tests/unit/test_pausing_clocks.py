@@ -8,7 +8,8 @@ import pytest
 from fake_real_time import FakeTimeLoop, play_in_fake_time
 
 from jacaros.robots.ros.ros_clock import RosClock
-from jacaros.runtime.clock import COMPACT_ABOVE, Clock, TimerQueue, VirtualClock, WallClock, of_run, run
+from jacaros.runtime.clock import Clock, VirtualClock, WallClock, of_run, run
+from jacaros.runtime.timers import COMPACT_ABOVE, TimerQueue
 from played import played
 
 

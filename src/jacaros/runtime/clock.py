@@ -9,11 +9,8 @@ held, too, so pausing does not change a run. `of_run` marks them; the loop conti
 page that shows the run.
 """
 
-import _thread
 import asyncio
 import contextvars
-import heapq
-import math
 import selectors
 import signal
 import sys
@@ -25,162 +22,10 @@ from collections.abc import Callable, Coroutine, Iterator, Sequence
 from concurrent.futures import Future
 from contextlib import AbstractContextManager, contextmanager
 from functools import partial
-from types import FrameType
 from typing import Any, TypeVar
 
-# An alarm that interrupts the main thread in the middle of whatever Python code it executes.
-#
-# POSIX has SIGALRM and a timer of the system.  On Windows a thread pretends that SIGILL has arrived, which nothing else
-# sends there: what waits in the system, or computes in C, is interrupted when it returns.
-
-
-if sys.platform == "win32":
-    SIGNAL = signal.SIGILL
-else:
-    SIGNAL = signal.SIGALRM
-
-
-class Alarm:
-    """One alarm, for the main thread only.
-
-    Args:
-        ring: called as a signal handler; what it raises is raised in the middle of the main thread's code.
-    """
-
-    def __init__(self, ring: Callable[[int, FrameType | None], object]) -> None:
-        self._ring = ring
-        self._armed = False
-        self._before: Any = None
-        self._rest = 0.0
-        """Seconds that were left of another timer."""
-        self._turn = 0
-
-    def set(self, seconds: float, again: float = 0.0) -> None:
-        """Ring in *seconds*, and then every *again* seconds unless that is 0; what was set before is replaced.
-
-        It may be called in a signal handler.
-        """
-        if not self._armed:
-            self._armed = True
-            before = signal.signal(SIGNAL, self._ring)
-            self._before = signal.SIG_DFL if before is None else before
-            if sys.platform != "win32":
-                self._rest = signal.getitimer(signal.ITIMER_REAL)[0]
-        self._turn += 1
-        if sys.platform == "win32":
-            # Without the locks of `threading`: the handler may have interrupted code that holds them.
-            _thread.start_new_thread(self._wait, (self._turn, seconds, again))
-        else:
-            signal.setitimer(signal.ITIMER_REAL, seconds, again)
-
-    def cancel(self) -> None:
-        """Stop ringing, and restore the handler of the signal."""
-        if not self._armed:
-            return
-        self._turn += 1
-        if sys.platform != "win32":
-            signal.setitimer(signal.ITIMER_REAL, self._rest)
-        signal.signal(SIGNAL, self._before)
-        self._armed = False
-
-    def _wait(self, turn: int, seconds: float, again: float) -> None:
-        time.sleep(seconds)
-        while self._turn == turn:
-            _thread.interrupt_main(SIGNAL)
-            if not again:
-                return
-            time.sleep(again)
-
-
-# A queue of timers ordered by time, used by every clock of a run.
-
-
-COMPACT_ABOVE = 100
-"""Cancelled timers that a queue may hold before it looks whether they are more than half of all."""
-
-
-class Timer:
-    """A call at a moment.
-
-    Attributes:
-        when: the moment, in seconds of the clock.
-    """
-
-    __slots__ = ("_queue", "callback", "when")
-
-    def __init__(self, when: float, callback: Callable[[], None], queue: "TimerQueue") -> None:
-        self.when = when
-        self.callback: Callable[[], None] | None = callback
-        self._queue = queue
-
-    def cancel(self) -> None:
-        """Cancel the call; no effect once it has been made."""
-        if self.callback is not None:
-            self.callback = None  # what it holds may be large, and the moment far
-            self._queue.note_cancelled()
-
-    def ring(self) -> None:
-        """Make the call, unless it was cancelled or made."""
-        callback, self.callback = self.callback, None
-        if callback is not None:
-            callback()
-
-
-_Entry = tuple[float, int, Timer]
-"""A moment, a number that no other timer has, and the timer: tuples compare without calling Python functions."""
-
-
-class TimerQueue:
-    """The pending timers of a clock, earliest first; equal moments keep the order in which they were set.
-
-    Attributes:
-        newest: number of the timer that was set last.
-    """
-
-    __slots__ = ("_cancelled", "_heap", "newest")
-
-    def __init__(self) -> None:
-        self._heap: list[_Entry] = []
-        self.newest = self._cancelled = 0
-
-    def __len__(self) -> int:
-        return len(self._heap)
-
-    def add(self, when: float, callback: Callable[[], None]) -> Timer:
-        """Set a timer."""
-        self.newest += 1
-        timer = Timer(when, callback, self)
-        heapq.heappush(self._heap, (when, self.newest, timer))
-        return timer
-
-    def first_moment(self) -> float | None:
-        """The moment of the earliest timer; None without one."""
-        heap = self._heap
-        while heap and heap[0][2].callback is None:
-            heapq.heappop(heap)
-        return heap[0][0] if heap else None
-
-    def next_due(self, moment: float, newest: float = math.inf) -> Timer | None:
-        """Remove and return the earliest timer that is due at *moment*; None if none is, or if it is newer."""
-        heap = self._heap
-        while heap and heap[0][0] <= moment and heap[0][1] <= newest:
-            timer = heapq.heappop(heap)[2]
-            if timer.callback is not None:
-                return timer
-        return None
-
-    def pending(self) -> Sequence[Timer]:
-        """The pending timers, in no order."""
-        return [timer for _, _, timer in self._heap if timer.callback is not None]
-
-    def note_cancelled(self) -> None:
-        """Count a timer that was cancelled; drop cancelled ones when they are many."""
-        self._cancelled += 1
-        if self._cancelled > COMPACT_ABOVE and 2 * self._cancelled > len(self._heap):
-            self._heap = [entry for entry in self._heap if entry[2].callback is not None]
-            heapq.heapify(self._heap)
-            self._cancelled = 0
-
+from jacaros.runtime.timers import Timer as Timer
+from jacaros.runtime.timers import TimerQueue
 
 VIRTUAL_EPOCH = 1_577_836_800.0
 """2020-01-01 00:00:00 UTC, in seconds since the Unix epoch: the start of every virtual run."""

@@ -19,7 +19,8 @@ from jacaros.agents.mind.rules.goals import WatchedGoal
 from jacaros.agents.mind.state.intention import PLAN, STEP, Intention
 from jacaros.agents.mind.state.pending import is_action
 from jacaros.agents.terms.text import text
-from jacaros.runtime.clock import Alarm, Clock, VirtualClock, WallClock, run
+from jacaros.runtime.alarm import Alarm
+from jacaros.runtime.clock import Clock, VirtualClock, WallClock, run
 from jacaros.runtime.errors import InternalError, JacarosError
 from jacaros.runtime.mas.agents.host import AgentHost
 from jacaros.runtime.mas.agents.python_code import PythonCode

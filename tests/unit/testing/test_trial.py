@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.runtime import clock
+from jacaros.runtime.alarm import SIGNAL
 from jacaros.runtime.mas.agents.programs import SourcePath
 from jacaros.runtime.mas.checks.files import check_files
 from jacaros.testing.suites import Outcome, suite_of
@@ -259,11 +259,11 @@ def test_a_step_that_does_not_end_is_stopped(outcomes: Outcomes) -> None:
     program = (
         "@t[test] +!t <- .findall(X, .range(X, 1, 100000000000), _). @u[test] +!u <- !assert_true(true)."
     )
-    before = signal.getsignal(clock.SIGNAL)
+    before = signal.getsignal(SIGNAL)
     hanging, other = outcomes(program, replace(BRIEF, patience=2.0))
     assert "did not end within 2 s of real time" in hanging.problems[0].message
     assert other.passed
-    assert signal.getsignal(clock.SIGNAL) is before
+    assert signal.getsignal(SIGNAL) is before
     assert sys.platform == "win32" or signal.getitimer(signal.ITIMER_REAL)[0] == 0.0
 
 

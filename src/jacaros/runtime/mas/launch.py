@@ -18,7 +18,8 @@ from typing import Any, NoReturn
 
 from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.robots.ros import lifetime
-from jacaros.runtime.clock import Alarm, Clock, VirtualClock, WallClock, new_event_loop
+from jacaros.runtime.alarm import Alarm
+from jacaros.runtime.clock import Clock, VirtualClock, WallClock, new_event_loop
 from jacaros.runtime.files.texts import is_file
 from jacaros.runtime.mas.agents.programs import PROJECTS, source_folders
 from jacaros.runtime.mas.console import RunConsole

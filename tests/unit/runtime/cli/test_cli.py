@@ -10,7 +10,7 @@ import pytest
 from command_lab import Outcome
 
 from jacaros.robots.world import GroundTruth
-from jacaros.runtime import clock
+from jacaros.runtime.alarm import SIGNAL
 
 
 @pytest.fixture
@@ -22,9 +22,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_a_program_prints_sets_the_exit_code_and_restores_signal_handlers(folder: Path, outcome: Outcome):
-    before = [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM, clock.SIGNAL)]
+    before = [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM, SIGNAL)]
     assert outcome("run", "hello.asl", "--clock", "fast") == (3, "[hello] hi\n", "")
-    assert [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM, clock.SIGNAL)] == before
+    assert [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM, SIGNAL)] == before
 
 
 def test_run_is_the_default_command(folder: Path, outcome: Outcome) -> None:
