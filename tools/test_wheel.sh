@@ -75,10 +75,9 @@ missing() {
   if grep -q Traceback missing.log; then cat missing.log; fail "$* shows a traceback"; fi
 }
 missing rosbridge "$jacaros" run hello.asl --ros rosbridge --for 1
-missing maps "$jacaros" world show house --output house.png
 
 install "$wheel[behaviour-trees,maps,rosbridge]"
-"$jacaros" world show house --output house.png
+"$jacaros" world show house --output house.svg
 "$jacaros" run examples/07_shared_robot/shared_robot.jcm --clock fast --ground-truth truth.jsonl >shared_robot.log
 "$scratch/venv/bin/python" examples/07_shared_robot/check.py truth.jsonl | grep -q '^passed$'
 PYTHON=$python "$root/tools/make_sbom.sh" "$dist"

@@ -28,41 +28,26 @@ def command() -> None:
 
 @command.command(
     "show",
-    short_help="Draw a world in the terminal, or as SVG or PNG.",
+    short_help="Draw a world in the terminal, or as SVG.",
     epilog=examples("jacaros world show house", "jacaros world show world.yaml --output world.svg"),
 )
 @click.argument("world")
-@option("--output FILE", "Write a picture to FILE.svg or FILE.png.", PATH)
+@option("--output FILE.svg", "Write a picture to FILE.svg.", PATH)
 def show_command(world: str, output: Path | None) -> None:
     """Draw WORLD in the terminal, with docks, closed doors and robots, or write a picture of it."""
     if output is None:
         _draw(load_world(world))
         return
-    kind = output.suffix.lower()
-    if kind not in (".svg", ".png"):
+    if output.suffix.lower() != ".svg":
         raise usage_error(
-            f"expected a file name with the suffix .svg or .png, found `{output}`",
+            f"expected a file name with the suffix .svg, found `{output}`",
             f"--output {output.with_suffix('.svg')}",
         )
     check_output(output, "picture")
     from jacaros.look.page.picture import picture_svg  # here: only for pictures
     from jacaros.look.records.recording import Recording
 
-    svg = picture_svg(Recording(world=load_world(world).drawing()), _WIDTH)
-    _write(output, svg if kind == ".svg" else _png(svg))
-
-
-def _png(svg: str) -> bytes:
-    try:
-        from resvg_py import svg_to_bytes  # here: an extra, and only for PNG
-    except ImportError:
-        raise usage_error(
-            "PNG pictures need resvg, which is not installed",
-            "pip install 'jacaros[maps]', or --output FILE.svg",
-        ) from None
-    # Nearly every Linux has this font; on other systems resvg chooses one.
-    font = "DejaVu Sans" if sys.platform == "linux" else None
-    return bytes(svg_to_bytes(svg_string=svg, background="white", sans_serif_family=font))
+    _write(output, picture_svg(Recording(world=load_world(world).drawing()), _WIDTH))
 
 
 @command.command(

@@ -1,6 +1,5 @@
 """``jacaros world``: pictures and exported maps."""
 
-import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -37,20 +36,6 @@ def test_a_picture_of_a_world_is_written(folder: Path, outcome: Outcome) -> None
     assert "living room" in (folder / "house.svg").read_text()
 
 
-def test_a_picture_of_a_world_is_written_as_png(folder: Path, outcome: Outcome) -> None:
-    assert outcome("show", "house", "--output", "house.png")[0] == 0
-    picture = (folder / "house.png").read_bytes()
-    assert picture.startswith(b"\x89PNG")
-    assert int.from_bytes(picture[16:20], "big") == 640
-
-
-def test_a_missing_png_library_suggests_what_to_install(folder: Path, outcome, monkeypatch):
-    monkeypatch.setitem(sys.modules, "resvg_py", None)
-    code, _, errors = outcome("show", "house", "--output", "house.png")
-    assert code == 2
-    assert "pip install 'jacaros[maps]', or --output FILE.svg" in errors
-
-
 def test_an_exported_world_is_a_world(folder: Path, outcome: Outcome) -> None:
     assert outcome("export", "house", "h.yaml") == (0, "wrote h.yaml\nwrote h.pgm\n", "")
     assert load_world("h.yaml").bounds == load_world("house").bounds
@@ -63,7 +48,7 @@ def test_an_exported_world_is_a_world(folder: Path, outcome: Outcome) -> None:
         (
             ("show", "house", "--output", "h.gif"),
             2,
-            "expected a file name with the suffix .svg or .png, found `h.gif`",
+            "expected a file name with the suffix .svg, found `h.gif`",
         ),
         (("show", "house", "--output", "notes.svg"), 2, "`notes.svg` exists and is not a picture"),
         (("show", "nowhere"), 1, "world not found: `nowhere`"),
