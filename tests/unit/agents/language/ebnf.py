@@ -1,4 +1,4 @@
-"""Read a grammar in EBNF, write random strings of it, and recognise strings of it (Earley's algorithm)."""
+"""Read a grammar in EBNF, write random strings of it, and recognise strings of it."""
 
 import re
 from collections.abc import Collection, Mapping, Sequence
@@ -32,19 +32,6 @@ class Grammar:
     def cost(self, alternative: Sequence[Symbol]) -> int:
         """The length of the shortest derivation of an alternative."""
         return sum(self.costs.get(name, 1) for _, name in alternative)
-
-    def nullable(self) -> set[str]:
-        """The rules that derive the empty string."""
-        found: set[str] = set()
-        while True:
-            more = {
-                name
-                for name, alternatives in self.rules.items()
-                if any(all(not t and n in found for t, n in each) for each in alternatives)
-            }
-            if more == found:
-                return found
-            found = more
 
 
 def read(text: str) -> Grammar:
@@ -120,58 +107,30 @@ def written(grammar: Grammar, random: Random, start: str, room: int) -> list[str
     return tokens
 
 
-_Item = tuple[str, int, int, int]
-"""A rule, its alternative, the position in it, and where it began."""
-
-
 class Recogniser:
-    """Decides whether strings belong to a grammar."""
+    """Decides whether strings belong to a grammar without left recursion."""
 
     def __init__(self, grammar: Grammar, start: str) -> None:
         self._rules: Mapping[str, list[list[Symbol]]] = grammar.rules
-        self._nullable, self._start = grammar.nullable(), start
+        self._start = start
 
     def accepts(self, tokens: Sequence[Collection[str]]) -> bool:
         """Return whether a string belongs to the grammar; each token is given by all terminals that it matches."""
-        chart: list[dict[_Item, None]] = [{} for _ in range(len(tokens) + 1)]
-        chart[0] = {(self._start, number, 0, 0): None for number in range(len(self._rules[self._start]))}
-        for place, token in enumerate([*tokens, ()]):
-            self._close(chart, place)
-            if place < len(tokens):
-                chart[place + 1] = {
-                    (name, number, dot + 1, begin): None
-                    for name, number, dot, begin in chart[place]
-                    if (symbol := self._after(name, number, dot)) is not None
-                    and (symbol[0] or symbol[1] not in self._rules)
-                    and symbol[1] in token
-                }
-        return any(
-            item[0] == self._start and item[3] == 0 and self._after(*item[:3]) is None for item in chart[-1]
-        )
+        known: dict[tuple[str, int], set[int]] = {}
 
-    def _after(self, name: str, number: int, dot: int) -> Symbol | None:
-        alternative = self._rules[name][number]
-        return alternative[dot] if dot < len(alternative) else None
+        def ends(symbol: Symbol, place: int) -> set[int]:
+            """Where derivations of a symbol that begin at a place may end."""
+            terminal, name = symbol
+            if terminal or name not in self._rules:
+                return {place + 1} if place < len(tokens) and name in tokens[place] else set()
+            if (name, place) not in known:
+                found: set[int] = set()
+                for alternative in self._rules[name]:
+                    places = {place}
+                    for each in alternative:
+                        places = set().union(*(ends(each, at) for at in places))
+                    found |= places
+                known[name, place] = found
+            return known[name, place]
 
-    def _close(self, chart: list[dict[_Item, None]], place: int) -> None:
-        """Add what follows without another token."""
-        items = chart[place]
-        todo = list(items)
-        while todo:
-            name, number, dot, begin = todo.pop()
-            symbol = self._after(name, number, dot)
-            new: list[_Item] = []
-            if symbol is None:
-                new = [
-                    (above, n, d + 1, b)
-                    for above, n, d, b in chart[begin]
-                    if self._after(above, n, d) == (False, name)
-                ]
-            elif not symbol[0] and symbol[1] in self._rules:
-                new = [(symbol[1], n, 0, place) for n in range(len(self._rules[symbol[1]]))]
-                if symbol[1] in self._nullable:
-                    new.append((name, number, dot + 1, begin))
-            for item in new:
-                if item not in items:
-                    items[item] = None
-                    todo.append(item)
+        return len(tokens) in ends((False, self._start), 0)

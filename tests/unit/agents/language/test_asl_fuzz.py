@@ -13,104 +13,13 @@ from jacaros.agents.language.lowering import format_term
 
 TESTS = Path(__file__).parents[3]
 PROGRAMS = [path.read_text(encoding="utf-8") for path in sorted((TESTS / "conformance").rglob("*.asl"))]
-PIECES = [
-    *[
-        "p",
-        "X",
-        "_",
-        "_1",
-        "12",
-        ".5",
-        '"s"',
-        "'q'",
-        '"',
-        "'",
-        "a.b",
-        ".print",
-        ".length",
-        "math.max",
-        "ns::",
-        "N::",
-    ],
-    *[
-        ".",
-        ",",
-        ";",
-        ":",
-        ":-",
-        "<-",
-        "<:",
-        "!",
-        "!!",
-        "?",
-        "^",
-        "@",
-        "@l",
-        "~",
-        "::",
-        "#",
-        "$",
-        "\\",
-        "é",
-        "日",
-    ],
-    *[
-        "+",
-        "-",
-        "-+",
-        "++",
-        "--",
-        "+<",
-        "+>",
-        "*",
-        "/",
-        "**",
-        "<",
-        "<=",
-        ">",
-        "=",
-        "==",
-        "\\==",
-        "=..",
-        "|",
-        "&",
-    ],
-    *[
-        "(",
-        ")",
-        "[",
-        "]",
-        "{",
-        "}",
-        "[a|T]",
-        "|&|",
-        "|||",
-        "+!g",
-        "+b(X)",
-        "if(a){b}",
-        "{end}",
-        "{begin dg(g)}",
-    ],
-    *[
-        "div",
-        "mod",
-        "not",
-        "true",
-        "false",
-        "if",
-        "else",
-        "elif",
-        "for",
-        "while",
-        "begin",
-        "end",
-        "//",
-        "/*",
-        "*/",
-    ],
-    *['{include("x")}', "{namespace(n)}", "\n", "\t", " "],
-]
-
+WORDS = r"""
+    p X _ _1 12 .5 "s" 'q' " ' a.b .print .length math.max ns:: N:: . , ; : :- <- <: ! !! ? ^ @ @l ~ ::
+    # $ \ é 日 + - -+ ++ -- +< +> * / ** < <= > = == \== =.. | & ( ) [ ] { } [a|T] |&| ||| +!g +b(X)
+    if(a){b} {end} div mod not true false if else elif for while begin end // /* */ {include("x")}
+    {namespace(n)}
+"""
+PIECES = [*WORDS.split(), "{begin dg(g)}", "\n", "\t", " "]
 fuzzed = settings(max_examples=150)
 
 

@@ -1,13 +1,10 @@
 """Patterns of plans: what they expand to, and how the plans run."""
 
-from pathlib import Path
-
-import pytest
-from asl_lab import belief_texts, places, plan_texts, program
+from asl_lab import belief_texts, places, plan_texts
+from asl_lab import program as program_of
+from recording_host import printed, programs
 
 from jacaros.agents.language import nodes
-from jacaros.runtime.mas.launch import launch
-from jacaros.runtime.mas.options import RunOptions
 
 
 def expanded(pattern: str, clauses: str = "+!at(X) : a(X) <- go(X).") -> list[str]:
@@ -37,7 +34,7 @@ def test_only_plans_for_the_goal_are_changed_in_one_variable():
         "+!at(Y) <- b; ?at(Y).",
         "-!P <- b.",
     ]
-    plan = program("{ begin dg(at(_)) } { end }").plans[0]
+    plan = program_of("{ begin dg(at(_)) } { end }").plans[0]
     assert isinstance(plan.trigger.literal, nodes.Literal)
     assert plan.trigger.literal == plan.context
     assert all(isinstance(a, nodes.Variable) and not a.unnamed for a in plan.trigger.literal.arguments)
@@ -118,110 +115,58 @@ def test_wrong_patterns_and_derived_events_are_refused():
     assert places(program) == [(2, "programs do not declare derived events")]
 
 
-class ListConsole:
-    """Keeps what the agents print."""
-
-    def __init__(self) -> None:
-        self.lines: list[str] = []
-        self.logs: list[str] = []
-
-    def print(self, agent: str, text: str) -> None:
-        self.lines.append(text)
-
-    def log(self, text: str, level: str = "info") -> None:
-        self.logs.append(text)
-
-
-@pytest.fixture
-def printed(tmp_path: Path):
-    def run(text: str) -> list[str]:
-        path = tmp_path / "agent.asl"
-        path.write_text(text, encoding="utf-8")
-        console = ListConsole()
-        assert launch(path, RunOptions(fast=True), console, own_process=False) == 0
-        return console.lines
-
-    return run
-
-
-def test_an_exclusive_goal_fails_when_all_its_plans_have_been_tried(printed):
-    assert printed(
-        """
-        { begin ebdg(got(_)) }
-        +!got(X) <- .print(first(X)); .fail.
-        +!got(X) : false <- .print(never).
-        +!got(X) <- .print(second(X)); .fail.
-        { end }
-        !start.
-        +!start <- !got(tea); .print(bad).
-        -!start[error(E)] <- .count(p__tried(_,_),N); .print(E," ",N); .stopMAS.
-        """
-    ) == ["first(tea)", "second(tea)", "no_applicable 0"]
-
-
-def test_an_exclusive_goal_continues_with_the_next_plan(printed):
-    assert printed(
-        """
-        { begin ebdg(got(_)) }
-        +!got(X) <- .print(first); .fail.
-        +!got(X) <- .print(second); +got(X).
-        { end }
-        !start.
-        +!start <- !got(tea); .count(p__tried(_,_),N); .print(N); .stopMAS.
-        """
-    ) == ["first", "second", "0"]
+RUN = """
+an exclusive goal fails when all its plans have been tried => first(tea) | second(tea) | no_applicable 0
+    { begin ebdg(got(_)) }
+    +!got(X) <- .print(first(X)); .fail.
+    +!got(X) : false <- .print(never).
+    +!got(X) <- .print(second(X)); .fail.
+    { end }
+    !start.
+    +!start <- !got(tea); .print(bad).
+    -!start[error(E)] <- .count(p__tried(_,_),N); .print(E," ",N); .stopMAS.
+an exclusive goal continues with the next plan => first | second | 0
+    { begin ebdg(got(_)) }
+    +!got(X) <- .print(first); .fail.
+    +!got(X) <- .print(second); +got(X).
+    { end }
+    !start.
+    +!start <- !got(tea); .count(p__tried(_,_),N); .print(N); .stopMAS.
+single minded commitment fails when the goal is impossible => try | try | try | breaking | failed(impossible)
+    { begin smc(clean, broken) }
+    +!clean <- .print(try); .wait(100); .fail.
+    { end }
+    !start. !breaker.
+    +!start <- !clean; .print(bad).
+    -!start[error(E)] <- .print(failed(E)); .stopMAS.
+    +!breaker <- .wait(250); .print(breaking); +broken.
+relativised commitment ends without its motivation => try | try | unwanted | over
+    wanted.
+    { begin rc(clean, wanted) }
+    +!clean <- .print(try); .wait(100); .fail.
+    { end }
+    !start. !loser.
+    +!start <- !clean; .print(over); .stopMAS.
+    +!loser <- .wait(150); .print(unwanted); -wanted.
+open minded commitment is also achieved => try(a) | over | try(b) | ended
+    wanted.
+    { begin omc(at(_), broken, wanted) }
+    +!at(X) <- .print(try(X)); .wait(100); +at(X).
+    { end }
+    !start.
+    +!start <- !at(a); .print(over); !!other; .wait(50); -wanted.
+    +!other <- !at(b); .print(ended); .stopMAS.
+sequenced goals queue up and a failing one makes room
+=> begin(1) | placed | end(1) | fails | begin(3) | end(3) | begin(4) | end(4)
+    { begin sga("+order(X)", "true", serve(X)) }
+    { end }
+    !start.
+    +!start <- ++order(1); ++order(2); ++order(3); .print(placed); .wait(900); ++order(4); .wait(300); .stopMAS.
+    +!serve(2) <- .print(fails); .fail.
+    +!serve(X) <- .print(begin(X)); .wait(160); .print(end(X)).
+"""
 
 
-def test_single_minded_commitment_fails_when_the_goal_is_impossible(printed):
-    assert printed(
-        """
-        { begin smc(clean, broken) }
-        +!clean <- .print(try); .wait(100); .fail.
-        { end }
-        !start. !breaker.
-        +!start <- !clean; .print(bad).
-        -!start[error(E)] <- .print(failed(E)); .stopMAS.
-        +!breaker <- .wait(250); .print(breaking); +broken.
-        """
-    ) == ["try", "try", "try", "breaking", "failed(impossible)"]
-
-
-def test_relativised_commitment_ends_without_its_motivation(printed):
-    assert printed(
-        """
-        wanted.
-        { begin rc(clean, wanted) }
-        +!clean <- .print(try); .wait(100); .fail.
-        { end }
-        !start. !loser.
-        +!start <- !clean; .print(over); .stopMAS.
-        +!loser <- .wait(150); .print(unwanted); -wanted.
-        """
-    ) == ["try", "try", "unwanted", "over"]
-
-
-def test_open_minded_commitment_is_also_achieved(printed):
-    assert printed(
-        """
-        wanted.
-        { begin omc(at(_), broken, wanted) }
-        +!at(X) <- .print(try(X)); .wait(100); +at(X).
-        { end }
-        !start.
-        +!start <- !at(a); .print(over); !!other; .wait(50); -wanted.
-        +!other <- !at(b); .print(ended); .stopMAS.
-        """
-    ) == ["try(a)", "over", "try(b)", "ended"]
-
-
-def test_sequenced_goals_queue_up_and_a_failing_one_makes_room(printed):
-    assert printed(
-        """
-        { begin sga("+order(X)", "true", serve(X)) }
-        { end }
-        !start.
-        +!start <- ++order(1); ++order(2); ++order(3); .print(placed); .wait(900); ++order(4); .wait(300); .stopMAS.
-        +!serve(2) <- .print(fails); .fail.
-        +!serve(X) <- .print(begin(X)); .wait(160); .print(end(X)).
-        """
-    ) == ["begin(1)", "placed", "end(1)", "fails", "begin(3)", "end(3)", "begin(4)", "end(4)"]
+@programs(RUN)
+def test_what_a_program_prints(program, output):
+    assert printed(program) == output

@@ -87,121 +87,74 @@ def test_carets_are_below_the_error_even_after_tabs():
     ]
 
 
-@pytest.mark.parametrize(
-    ("text", "line", "message", "help"),
-    [
-        ("+!g\n<- X = else.", 2, "reserved word `else` used as a name", "quote it as an atom"),
-        (
-            "\ngröße(3).",
-            2,
-            "name `größe` contains the letter `ö`; names consist of",
-            "rename it, or quote it",
-        ),
-        (
-            "+!g <- X = [1,2).",
-            1,
-            "`[` is closed by `)`",
-            "close it with `]`; it was opened at line 1, column 12",
-        ),
-        (
-            "+!g <- .print(a;\n .print(b).",
-            1,
-            "unclosed `(`: expected `)`, found `;`",
-            "close it with `)`; it was opened at",
-        ),
-        (
-            "+!g <- for (x) { a; b .",
-            1,
-            "unclosed `{`: expected `}`, found `.`",
-            "close it with `}`; it was opened at",
-        ),
-        ("p(1)\nq(2).", 2, "belief without a final `.` before the next belief", "put a `.`"),
-        ("!g\n!h.", 2, "goal without a final `.` before a goal", "put a `.` at the end of line 1"),
-        ("+!g <- a; b", 1, "plan without a final `.`", "put a `.` at the end of the file"),
-        ("start <- .print(a).", 1, "expected the trigger of a plan", "write a plan as `+!goal"),
-        ("+!g :- a.", 1, "unexpected `:-` in a plan", "write a plan as `+!goal : condition <- steps.`"),
-        ("+!g <- a, b.", 1, "expected `;` between steps, found `,`", None),
-        ("+!g : a, b <- c.", 1, "expected `&` between conditions, found `,`", "write `&` for 'and'"),
-        ("p(1), q(2).", 1, "expected `.` after a belief, found `,`", "write `p(1). p(2).`"),
-        ("+!g : a && b.", 1, "unknown operator `&&`", "write one `&` for 'and', one `|` for 'or'"),
-        ("+!g : a || b.", 1, "unknown operator `||`", "write one `&` for 'and', one `|` for 'or'"),
-        ("+!g : X != 1.", 1, "unknown operator `!=`", r"write `\==` for 'not equal'"),
-        ("+!g : X =< 1.", 1, "unknown operator `=<`", "write `<=`"),
-        (r"+!g : X \= 1.", 1, r"unexpected `\`", r"write `\==` for 'not equal'"),
-        ("+!g : 1 < X < 5.", 1, "relations cannot be chained", "join two of them with `&`"),
-        ("r(X) :- p(X) & !.", 1, "unknown operator `!` (cut)", "a plan takes the first solution"),
-        ("r(X) :- p(X); q(X).", 1, "expected `&` or `|` between conditions, found `;`", "write `|` for 'or'"),
-        ("+!g(X) <- X++; a.", 1, "unknown operator `++`", "variables keep their value"),
-        ("+!g : X ~= 1 <- a.", 1, "unknown operator `~=`", r"write `\==` for 'not equal'"),
-        ("+!g <- X is Y + 1.", 1, "unknown keyword `is`", "bind a variable with `=`"),
-        ("# a comment\np.", 1, "unexpected character '#'", "begin comments with `//`"),
-        ("+!g : .", 1, "missing context after `:`", None),
-        ("+!g <- a <- b.", 1, "second `<-` in a plan", "if this is a new plan"),
-        ("+!g <- +!h.", 1, "expected a step, found the trigger `+!`", "post a goal with `!g`"),
-        ("+!g <- if (a) { b } else if (c) { d }.", 1, "write `elif` for `else if`", "elif (condition)"),
-        ("+!g <- if (a) { b }; else { c }.", 1, "`else` without `if`", "remove the `;`"),
-        ("+!g <- while x { b }.", 1, "expected `(` and the condition of `while`, found `x`", None),
-        ("+!g <- a; ; b.", 1, "empty step between two `;`", None),
-        ("+!g <- for (X in [1]) { p }.", 1, "unknown keyword `in`", "find elements of a list with `.member`"),
-        (
-            "+!g <- if x > 3 { p }.",
-            1,
-            "expected `(` and the condition of `if`, found `x`",
-            "write `if (condition) { steps }`",
-        ),
-        ("+!g : not p(1)\n  .print(q).", 2, "expected `<-`, found `.print`", "write `<-` before the steps"),
-        (
-            "+!g <- if (p) { q else { r }.",
-            1,
-            "missing `}` before `else`",
-            "close the block that was opened at line 1, column 15",
-        ),
-        ('!start <- .print("hi").', 1, "`!start` is a goal, not the trigger of a plan", "write `+!start`"),
-        ("p. !start(1) : p <- q.", 1, "`!start` is a goal, not the trigger of a plan", "write `+!start`"),
-        (
-            '+!g <- .print(f"at {X}").',
-            1,
-            "strings have no prefix such as `f` in Python",
-            "write values between strings",
-        ),
-        ("def go(): pass", 1, "Python keyword `def` in an agent program", "this is an agent program"),
-        ("+!g <- X = foo + 1.", 1, "operand of `+` is not a number", "ask for the value first"),
-        (
-            '+!g <- X = "a" + "b".',
-            1,
-            "operand of `+` is not a number",
-            "join strings and lists with `.concat",
-        ),
-        ("+!g <- X = math.flor(1) + 1.", 1, "unknown function `math.flor/1`", "did you mean"),
-        ("+!g <- .print(a)[b].", 1, "internal action `.print` cannot have annotations", None),
-        (
-            "+!g : .foreach(p,{a}) <- c.",
-            1,
-            "internal action `.foreach` acts and cannot be in a context",
-            "move it into the body",
-        ),
-        (".print(a).", 1, "internal action `.print` outside a plan", "if it is a step of the plan before"),
-        ("!!g.", 1, "expected one `!` before an initial goal", "write `!goal.`"),
-        ("p(a).q(b).", 1, "`.q` is read as one word", "put a blank or a line end after the final"),
-        ("@X +!g.", 1, "expected an atom as label, optionally with annotations", "write `@stop[atomic]"),
-        ("/* never closed\n p.", 1, "unterminated comment", "end it with `*/`"),
-        ("+!g <- a. }", 1, "expected a belief, a goal or a plan, found `}`", None),
-        ("+!g <- a }.", 1, "unmatched `}`", None),
-        ("p(#).", 1, "unexpected character '#'", None),
-        ("[a].", 1, "expected a belief, a goal or a plan, found `[`", None),
-        ("X.", 1, "expected a literal as belief", None),
-        ("p([a|b]).", 1, "expected a variable or a list as the tail of a list", "write `[H|T]`"),
-        ("p[a|b].", 1, "expected a variable as the tail of annotations", "write `p(X)"),
-    ],
-)
-def test_common_mistakes(text, line, message, help):
-    first = errors(text)[0]
+COMMON_MISTAKES = r"""
++!g⏎<- X = else. => 2: reserved word `else` used as a name => quote it as an atom
+⏎größe(3). => 2: name `größe` contains the letter `ö`; names consist of => rename it, or quote it
++!g <- X = [1,2). => 1: `[` is closed by `)` => close it with `]`; it was opened at line 1, column 12
++!g <- .print(a;⏎ .print(b). => 1: unclosed `(`: expected `)`, found `;` => close it with `)`; it was opened at
++!g <- for (x) { a; b . => 1: unclosed `{`: expected `}`, found `.` => close it with `}`; it was opened at
+p(1)⏎q(2). => 2: belief without a final `.` before the next belief => put a `.`
+!g⏎!h. => 2: goal without a final `.` before a goal => put a `.` at the end of line 1
++!g <- a; b => 1: plan without a final `.` => put a `.` at the end of the file
+start <- .print(a). => 1: expected the trigger of a plan => write a plan as `+!goal
++!g :- a. => 1: unexpected `:-` in a plan => write a plan as `+!goal : condition <- steps.`
++!g <- a, b. => 1: expected `;` between steps, found `,`
++!g : a, b <- c. => 1: expected `&` between conditions, found `,` => write `&` for 'and'
+p(1), q(2). => 1: expected `.` after a belief, found `,` => write `p(1). p(2).`
++!g : a && b. => 1: unknown operator `&&` => write one `&` for 'and', one `|` for 'or'
++!g : a || b. => 1: unknown operator `||` => write one `&` for 'and', one `|` for 'or'
++!g : X != 1. => 1: unknown operator `!=` => write `\==` for 'not equal'
++!g : X =< 1. => 1: unknown operator `=<` => write `<=`
++!g : X \= 1. => 1: unexpected `\` => write `\==` for 'not equal'
++!g : 1 < X < 5. => 1: relations cannot be chained => join two of them with `&`
+r(X) :- p(X) & !. => 1: unknown operator `!` (cut) => a plan takes the first solution
+r(X) :- p(X); q(X). => 1: expected `&` or `|` between conditions, found `;` => write `|` for 'or'
++!g(X) <- X++; a. => 1: unknown operator `++` => variables keep their value
++!g : X ~= 1 <- a. => 1: unknown operator `~=` => write `\==` for 'not equal'
++!g <- X is Y + 1. => 1: unknown keyword `is` => bind a variable with `=`
+# a comment⏎p. => 1: unexpected character '#' => begin comments with `//`
++!g : . => 1: missing context after `:`
++!g <- a <- b. => 1: second `<-` in a plan => if this is a new plan
++!g <- +!h. => 1: expected a step, found the trigger `+!` => post a goal with `!g`
++!g <- if (a) { b } else if (c) { d }. => 1: write `elif` for `else if` => elif (condition)
++!g <- if (a) { b }; else { c }. => 1: `else` without `if` => remove the `;`
++!g <- while x { b }. => 1: expected `(` and the condition of `while`, found `x`
++!g <- a; ; b. => 1: empty step between two `;`
++!g <- for (X in [1]) { p }. => 1: unknown keyword `in` => find elements of a list with `.member`
++!g <- if x > 3 { p }. => 1: expected `(` and the condition of `if`, found `x` => write `if (condition) { steps }`
++!g : not p(1)⏎  .print(q). => 2: expected `<-`, found `.print` => write `<-` before the steps
++!g <- if (p) { q else { r }. => 1: missing `}` before `else` => close the block that was opened at line 1, column 15
+!start <- .print("hi"). => 1: `!start` is a goal, not the trigger of a plan => write `+!start`
+p. !start(1) : p <- q. => 1: `!start` is a goal, not the trigger of a plan => write `+!start`
++!g <- .print(f"at {X}"). => 1: strings have no prefix such as `f` in Python => write values between strings
+def go(): pass => 1: Python keyword `def` in an agent program => this is an agent program
++!g <- X = foo + 1. => 1: operand of `+` is not a number => ask for the value first
++!g <- X = "a" + "b". => 1: operand of `+` is not a number => join strings and lists with `.concat
++!g <- X = math.flor(1) + 1. => 1: unknown function `math.flor/1` => did you mean
++!g <- .print(a)[b]. => 1: internal action `.print` cannot have annotations
++!g : .foreach(p,{a}) <- c. => 1: internal action `.foreach` acts and cannot be in a context => move it into the body
+.print(a). => 1: internal action `.print` outside a plan => if it is a step of the plan before
+!!g. => 1: expected one `!` before an initial goal => write `!goal.`
+p(a).q(b). => 1: `.q` is read as one word => put a blank or a line end after the final
+@X +!g. => 1: expected an atom as label, optionally with annotations => write `@stop[atomic]
+/* never closed⏎ p. => 1: unterminated comment => end it with `*/`
++!g <- a. } => 1: expected a belief, a goal or a plan, found `}`
++!g <- a }. => 1: unmatched `}`
+p(#). => 1: unexpected character '#'
+[a]. => 1: expected a belief, a goal or a plan, found `[`
+X. => 1: expected a literal as belief
+p([a|b]). => 1: expected a variable or a list as the tail of a list => write `[H|T]`
+p[a|b]. => 1: expected a variable as the tail of annotations => write `p(X)
+"""
+
+
+@pytest.mark.parametrize("case", COMMON_MISTAKES.strip().splitlines())
+def test_common_mistakes(case):
+    text, told, *help = case.split(" => ")
+    first = errors(text.replace("\N{RETURN SYMBOL}", "\n"))[0]
     assert first.span is not None
-    assert first.span.line == line
-    assert first.message.startswith(message)
-    if help is not None:
-        assert first.help is not None
-        assert first.help.startswith(help)
+    assert f"{first.span.line}: {first.message}".startswith(told)
+    assert (first.help or "").startswith("".join(help))
 
 
 def test_a_context_refuses_an_internal_action_that_is_declared_to_act():
