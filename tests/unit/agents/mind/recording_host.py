@@ -21,6 +21,9 @@ from jacaros.agents.mind.state.budget import Options
 from jacaros.agents.mind.state.plan_library import ProgramPlans
 from jacaros.agents.terms.text import text
 
+STARTED = 1_577_836_800.0
+"""The time at which runs begin."""
+
 
 class Ring:
     """A timer of the test's own time."""
@@ -37,7 +40,7 @@ class RecordingHost:
 
     def __init__(self, complete: Callable[[Act], Completion | None] | None = None) -> None:
         self.random = Random(1)
-        self.time = 1_577_836_800.0
+        self.time = STARTED
         self.printed: list[str] = []
         self.logged: list[tuple[str, str]] = []
         self.acts: list[Act] = []
@@ -201,24 +204,43 @@ def _reader(path: str) -> Callable[[str, str], tuple[str, str]]:
     return read
 
 
+def ran(program: str, seconds: float = 1000.0, **arguments: object) -> RecordingHost:
+    """An agent with this program that has run."""
+    host = mind(program, **arguments)  # type: ignore[arg-type]
+    host.run(seconds=seconds)
+    return host
+
+
 def printed(program: str, **arguments: object) -> list[str]:
     """What an agent with this program prints."""
-    host = mind(program, **arguments)  # type: ignore[arg-type]
-    host.run()
-    return host.printed
+    return ran(program, **arguments).printed  # type: ignore[arg-type]
+
+
+def outcome(host: RecordingHost) -> list[str]:
+    """What an agent has printed, how much time has passed (``@0.5``), and which acts it has cancelled."""
+    seconds = round(host.time - STARTED, 3)
+    time = [f"@{seconds}"] if seconds else []
+    return [*host.printed, *time, *(f"cancelled {number}" for number in host.cancelled)]
 
 
 def programs(cases: str) -> pytest.MarkDecorator:
     """Parametrize a test with programs and their outputs: a line ``name => one | two``, then the program, indented.
 
-    A long output has a line of its own after the name.
+    A long output has a line of its own after the name. With names that end in a time limit, as in ``name; 2.5 s``, the test
+    gets that of each program, too.
     """
     found: list[Any] = []
+    limited = re.search(r"; [0-9.]+ s\s=>", cases) is not None
     for case in re.split(r"^(?=[^\s=])", cases.lstrip("\n"), flags=re.MULTILINE)[1:]:
         name, rest = re.split(r"\s=>", case, maxsplit=1)
         output, program = rest.split("\n", 1)
-        found.append(pytest.param(dedent(program), output.strip().split(" | ") if output else [], id=name))
-    return pytest.mark.parametrize(("program", "output"), found)
+        case = [dedent(program), output.strip().split(" | ") if output else []]
+        if limited:
+            case.append(float(limit[1]) if (limit := re.search(r"; ([0-9.]+) s$", name)) else 60.0)
+        found.append(pytest.param(*case, id=name))
+    return pytest.mark.parametrize(
+        ("program", "output", "limit") if limited else ("program", "output"), found
+    )
 
 
 def believed(host: RecordingHost, name: str) -> list[str]:

@@ -1,26 +1,12 @@
 """Goals and plans that are checked when they end: ``achieves(Condition, Ms)``."""
 
 import pytest
-from recording_host import RecordingHost, mind, programs
+from recording_host import mind, outcome, programs, ran
 from test_snapshot import printed as printed_by_stored_minds
 
 from jacaros.agents.mind.rules.meta_events import observe_goals
 
-
-@pytest.fixture(params=["fast", "plain"], autouse=True)
-def engine(request, monkeypatch):
-    """Each test runs with generated code, and by the rules alone."""
-    monkeypatch.setenv("JACAROS_PLAIN", "1" if request.param == "plain" else "")
-
-
-def ran(program: str, seconds: float = 60.0) -> RecordingHost:
-    host = mind(program)
-    host.run(seconds=seconds)
-    return host
-
-
-def elapsed(host: RecordingHost) -> float:
-    return round(host.time - 1_577_836_800.0, 3)
+pytestmark = pytest.mark.usefixtures("engines")
 
 
 def test_the_failure_says_what_was_to_be_achieved_and_what_is_believed():
@@ -81,39 +67,34 @@ a failure plan further down handles it => g not_achieved
     !g. +!g <- !h[achieves(ok)]. +!h. -!g[error(E)] <- .print("g ", E).
 a goal without applicable plan fails as without a condition => no_applicable
     !g. +!g <- !h[achieves(ok)]. +!h : false. -!h[error(E)] <- .print(E).
-a goal that its goal condition ends is tested => not_achieved | after
+a goal that its goal condition ends is tested => not_achieved | after | @0.15
     !g. !t. +!g <- !h[achieves(ok, 100)]; .print(after).
     +!h <: at(home) <- { .wait(900) } |&| { .wait(800); .print(never) }.
     -!h[error(E)] <- .print(E).
     +!t <- .wait(50); +at(home).
-a goal that its goal condition ends has time => h | after
+a goal that its goal condition ends has time => h | after | @0.1
     !g. !t. +!g <- !h[achieves(ok, 100)]; .print(after).
     +!h <: at(home) <- .print(h); !i; .print(never). +!i <- .wait(900).
     +!t <- .wait(50); +at(home); .wait(50); +ok.
-a goal that is done is tested => 1 | 2 | after
+a goal that is done is tested => 1 | 2 | after | @0.01
     n(1). !g. +!g <- !h[achieves(n(2)), retry(4, 10)]; .print(after).
     +!h <: false <- ?n(N); .print(N); .done; .print(never).
     ^!h[state(retried)] <- -+n(2).
-a goal condition ends a goal whose sub-goal settles => h | left
+a goal condition ends a goal whose sub-goal settles => h | left | @0.1
     !g. !t. +!g <: at(home) <- !h[achieves(ok, 9000)]; .print(never). +!h <- .print(h).
     +!t <- .wait(50); +at(home); .wait(50); if (not .intend(g)) { .print(left) }.
-a goal that a sub-plan for an event ends is tested => h | not_achieved | after
+a goal that a sub-plan for an event ends is tested => h | not_achieved | after | @0.07
     !g. !t. +!g <- !h[achieves(ok, 20)]; .print(after).
     +!h <: false <- .print(h). { +e <- .done; .print(never). }
     -!h[error(E)] <- .print(E).
     +!t <- .wait(50); ++e.
 a failure plan that is done is not tested => after
     !g. +!g <- !h[achieves(ok)]; .print(after). +!h <- .fail. -!h <- .done; .print(never).
-a goal that another intention declares achieved is not tested => after
+a goal that another intention declares achieved is not tested => after | @0.05
     !g. !t. +!g <- !h[achieves(ok)]; .print(after). +!h <- .wait(900). +!t <- .wait(50); .succeed_goal(h).
 a goal that ends by a tail call is tested => 3 | 2 | 1 | 0 | not_achieved
     !g. +!g <- !h(3)[achieves(ok)]. +!h(0) <- .print(0). +!h(N) <- .print(N); !h(N - 1). -!h(_)[error(E)] <- .print(E).
 """
-
-
-@programs(GOALS)
-def test_what_a_program_prints_of_goals(program, output):
-    assert ran(program).printed == output
 
 
 PLANS = """
@@ -122,7 +103,7 @@ a plan is tested with the values that its variables have when it ends => h | not
     +!g <- !h(X); .print(after).
     @p[achieves(at(X, Y))] +!h(X) <- .print(h); X = 3; Y = 2.
     -!h(X)[error(E), not_achieved(C)] <- .print(E); .print(C).
-a plan is cleaned up before it fails => cleaning | not_achieved | after
+a plan is cleaned up before it fails => cleaning | not_achieved | after | @0.1
     !g.
     +!g <- !h; .print(after).
     @p[achieves(ok), cleanup(tidy(X))] +!h <- X = kitchen.
@@ -150,97 +131,64 @@ every plan of a chain of tail calls is tested => 2 | 1 | 0 | not_achieved(at(2))
 """
 
 
-@programs(PLANS)
-def test_what_a_program_prints_of_plans(program, output):
-    assert ran(program).printed == output
+TIMES = """
+a condition has time to come true => h | after2 | @0.6
+    !g. !t.
+    +!g <- !h[achieves(ok(X) & X > 1, 1000)]; .print(after, X).
+    +!h <- .print(h).
+    +!t <- .wait(300); +ok(1); .wait(300); -+ok(2).
+a condition that does not come true in time fails => [ok(1)] | @0.6
+    !g. !t.
+    +!g <- !h[achieves(ok(2), 500)].
+    +!h.
+    -!h[found(F)] <- .print(F).
+    +!t <- .wait(400); +ok(1); .wait(200); +ok(2).
+goal and plan have their own times => after | @0.4
+    !g. !t.
+    +!g <- !h[achieves(b, 300)]; .print(after).
+    @p[achieves(a, 300)] +!h.
+    +!t <- .wait(200); +a; .wait(200); +b.
+a goal that is not achieved is a failed attempt => 0 | 1 | 2 | after | @1.7
+    n(0). !g.
+    +!g <- !h[achieves(n(3), 100), retry(5, 500), within(60000)]; .print(after).
+    +!h <- ?n(N); -+n(N + 1); .print(N).
+    -!h <- .print(never).
+the number of attempts is that of a goal that fails => 3not_achieved
+    !g. +!g <- !h[achieves(ok), retry(2)]. +!h. -!h[attempts(N), error(E)] <- .print(N, E).
+the deadline holds while a goal settles => deadline | @0.3
+    !g. +!g <- !h[achieves(ok, 5000), within(300)]. +!h. -!h[error(E)] <- .print(E).
+each period is tested; 2.5 s => 0 | 0 | 0 | @2.05
+    n(0). !g.
+    +!g <- !!h(X)[achieves(n(X) & X < 3, 100), every(1000)].
+    +!h(X) <- ?n(X); -n(X); +n(X + 1); .print(X); .wait(50); -n(X + 1); +n(X).
+    +!h(X).
+each period fails; 2.5 s => not_achieved | not_achieved | not_achieved | @2.0
+    !h[achieves(ok), every(1000)]. +!h. -!h[error(E)] <- .print(E).
+while holds while a plan settles => tidy | condition_lost | @0.3
+    safe. !g. !t.
+    +!g <- !h.
+    @p[while(safe), achieves(ok, 5000), cleanup(tidy)] +!h.
+    -!h[error(E)] <- .print(E).
+    +!tidy <- .print(tidy).
+    +!t <- .wait(300); -safe.
+a goal in a fork is tested with the variables of its branch => 1 | 2 | after | @0.01
+    at(1). at(2). !g.
+    +!g <- { !h(X)[achieves(at(X), 50)]; .print(X) } |&| { .wait(10); !h(Y)[achieves(at(Y))]; .print(Y) };
+           .print(after).
+    n(0).
+    +!h(N) <- ?n(M); N = M + 1; -+n(N).
+a goal that forks is tested with the variables of the last branch => after2 | @0.02
+    at(2). !g.
+    +!g <- !h(X)[achieves(at(X))]; .print(after, X).
+    +!h(X) <- { .wait(10) } |&| { .wait(20); X = 2 }.
+"""
 
 
-def test_a_condition_has_time_to_come_true():
-    host = ran(
-        """
-        !g. !t.
-        +!g <- !h[achieves(ok(X) & X > 1, 1000)]; .print(after, X).
-        +!h <- .print(h).
-        +!t <- .wait(300); +ok(1); .wait(300); -+ok(2).
-        """
-    )
-    assert (host.printed, elapsed(host)) == (["h", "after2"], 0.6)
-    assert not host.agent.waits.conditions
-    assert not host.agent.waits.alarms
-
-
-def test_a_condition_that_does_not_come_true_in_time_fails():
-    host = ran(
-        """
-        !g. !t.
-        +!g <- !h[achieves(ok(2), 500)].
-        +!h.
-        -!h[found(F)] <- .print(F).
-        +!t <- .wait(400); +ok(1); .wait(200); +ok(2).
-        """
-    )
-    assert (host.printed, elapsed(host)) == (["[ok(1)]"], 0.6)
-
-
-def test_goal_and_plan_have_their_own_times():
-    host = ran(
-        """
-        !g. !t.
-        +!g <- !h[achieves(b, 300)]; .print(after).
-        @p[achieves(a, 300)] +!h.
-        +!t <- .wait(200); +a; .wait(200); +b.
-        """
-    )
-    assert (host.printed, elapsed(host)) == (["after"], 0.4)
-
-
-def test_a_goal_that_is_not_achieved_is_a_failed_attempt():
-    host = ran(
-        """
-        n(0). !g.
-        +!g <- !h[achieves(n(3), 100), retry(5, 500), within(60000)]; .print(after).
-        +!h <- ?n(N); -+n(N + 1); .print(N).
-        -!h <- .print(never).
-        """
-    )
-    assert (host.printed, elapsed(host)) == (["0", "1", "2", "after"], 1.7)
-    host = ran("!g. +!g <- !h[achieves(ok), retry(2)]. +!h. -!h[attempts(N), error(E)] <- .print(N, E).")
-    assert host.printed == ["3not_achieved"]
-
-
-def test_the_deadline_holds_while_a_goal_settles():
-    host = ran("!g. +!g <- !h[achieves(ok, 5000), within(300)]. +!h. -!h[error(E)] <- .print(E).")
-    assert (host.printed, elapsed(host)) == (["deadline"], 0.3)
-    assert not host.agent.waits.conditions
-
-
-def test_each_period_is_tested():
-    host = ran(
-        """
-        n(0). !g.
-        +!g <- !!h(X)[achieves(n(X) & X < 3, 100), every(1000)].
-        +!h(X) <- ?n(X); -n(X); +n(X + 1); .print(X); .wait(50); -n(X + 1); +n(X).
-        +!h(X).
-        """,
-        2.5,
-    )
-    assert host.printed == ["0", "0", "0"]
-    host = ran("!h[achieves(ok), every(1000)]. +!h. -!h[error(E)] <- .print(E).", 2.5)
-    assert host.printed == ["not_achieved"] * 3
-
-
-def test_while_holds_while_a_plan_settles():
-    host = ran(
-        """
-        safe. !g. !t.
-        +!g <- !h.
-        @p[while(safe), achieves(ok, 5000), cleanup(tidy)] +!h.
-        -!h[error(E)] <- .print(E).
-        +!tidy <- .print(tidy).
-        +!t <- .wait(300); -safe.
-        """
-    )
-    assert (host.printed, elapsed(host)) == (["tidy", "condition_lost"], 0.3)
+@programs(GOALS + PLANS + TIMES)
+def test_what_a_program_does(program, output, limit):
+    host = ran(program, limit)
+    assert outcome(host) == output
+    assert limit < 60 or not (host.agent.waits.alarms or host.agent.waits.conditions)
 
 
 @pytest.mark.parametrize(
@@ -264,30 +212,7 @@ def test_a_goal_that_settles_is_a_goal_of_its_intention(step, expected):
         """
     )
     assert host.printed == expected
-    assert not host.agent.alive
-    assert not host.agent.waits.conditions
-    assert not host.agent.waits.alarms
-
-
-def test_a_goal_in_a_fork_is_tested_with_the_variables_of_its_branch():
-    host = ran(
-        """
-        at(1). at(2). !g.
-        +!g <- { !h(X)[achieves(at(X), 50)]; .print(X) } |&| { .wait(10); !h(Y)[achieves(at(Y))]; .print(Y) };
-               .print(after).
-        n(0).
-        +!h(N) <- ?n(M); N = M + 1; -+n(N).
-        """
-    )
-    assert host.printed == ["1", "2", "after"]
-    host = ran(
-        """
-        at(2). !g.
-        +!g <- !h(X)[achieves(at(X))]; .print(after, X).
-        +!h(X) <- { .wait(10) } |&| { .wait(20); X = 2 }.
-        """
-    )
-    assert host.printed == ["after2"]
+    assert not any((host.agent.waits.conditions, host.agent.waits.alarms, host.agent.alive))
 
 
 def test_a_condition_that_cannot_be_evaluated_does_not_hold():
