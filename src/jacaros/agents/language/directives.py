@@ -227,28 +227,21 @@ def sequenced(call: PatternCall, section: nodes.Section) -> nodes.Section:
 
 
 def _trigger(call: PatternCall) -> nodes.Trigger:
-    """Return the first argument: a trigger as text or in braces."""
+    """Return the first argument: a trigger as text."""
     argument = call.arguments[0] if call.arguments else None
     if isinstance(argument, nodes.String):
         trigger: nodes.Trigger = call.parse(argument.value, PlanParser.trigger, "trigger")
         return trigger
-    if isinstance(argument, nodes.TriggerTerm):
-        return argument.trigger
-    if isinstance(argument, nodes.BodyTerm) and len(argument.body.steps) == 1:
-        step = argument.body.steps[0]
-        if isinstance(step, nodes.BeliefChange) and isinstance(step.operand, nodes.Literal | nodes.Variable):
-            return nodes.Trigger(step.operator, "", step.operand, span=step.span)
     raise WrongDirective("argument 1 of `sga` is not a trigger", 'write sga("+order(X)", "true", serve(X))')
 
 
 def _context(call: PatternCall) -> nodes.Term:
-    """Return the second argument: a condition, as text or as a term."""
-    if len(call.arguments) < 2:
+    """Return the second argument: a condition as text."""
+    argument = call.arguments[1] if len(call.arguments) > 1 else None
+    if not isinstance(argument, nodes.String):
         raise WrongDirective("`sga` expects a context as argument 2", 'write "true" for no context')
-    argument = call.arguments[1]
-    if isinstance(argument, nodes.String):
-        argument = call.parse(argument.value, PlanParser.condition, "condition")
-    return argument
+    condition: nodes.Term = call.parse(argument.value, PlanParser.condition, "condition")
+    return condition
 
 
 class Recipe(NamedTuple):
@@ -396,9 +389,6 @@ class DirectiveProcessor:
         try:
             if run is not None:
                 run(parser, directive, section)
-            elif name == "derive":
-                message = "programs do not declare derived events"
-                raise WrongDirective(message, "declare them in a mapping file, below `derived:`")
             elif name in PATTERNS:
                 raise WrongDirective(f"`{name}` expects a block", f"{{ begin {name}(...) }} plans {{ end }}")
             else:

@@ -47,8 +47,8 @@ class Undeclarable(Exception):
     """Raised when a function does not fit its decorator; the text says why and how to fix it."""
 
 
-def action_of(name: str, function: Callable[..., object], pure: bool = False) -> InternalAction:
-    """Return the internal action for a function; *pure* if its decorator says so.
+def action_of(name: str, function: Callable[..., object]) -> InternalAction:
+    """Return the internal action for a function.
 
     Raises:
         Undeclarable: its parameters do not fit.
@@ -66,7 +66,6 @@ def action_of(name: str, function: Callable[..., object], pure: bool = False) ->
         body_only=suspends,
         arity=(callee.minimum, callee.maximum),
         result_hint=callee.result_hint,
-        pure=pure and not suspends,
     )
 
 
@@ -368,13 +367,11 @@ class Declared:
         kind: ``internal action`` or ``arithmetic function``.
         function: the function itself.
         name: as programs write it; None for the default, module and function.
-        pure: whether questions about an agent may call it.
     """
 
     kind: str
     function: Callable[..., object]
     name: str | None
-    pure: bool = False
 
 
 ACTION, FUNCTION = "internal action", "arithmetic function"
@@ -385,10 +382,10 @@ def internal_action(name: F, /) -> F: ...
 
 
 @overload
-def internal_action(name: str | None = None, /, *, pure: bool = False) -> Callable[[F], F]: ...
+def internal_action(name: str | None = None, /) -> Callable[[F], F]: ...
 
 
-def internal_action(name: str | F | None = None, /, *, pure: bool = False) -> object:
+def internal_action(name: str | F | None = None, /) -> object:
     """Make a function an internal action of the project's agents.
 
     The first part of the name must lead to the module: for ``my.norm(X, Y, L)`` agents look for ``my.py``, or a package
@@ -407,15 +404,13 @@ def internal_action(name: str | F | None = None, /, *, pure: bool = False) -> ob
 
     Args:
         name: as programs write it, with dots; by default the module and the function.
-        pure: the function only computes its result. Questions (the console of the live page, conditions of breakpoints, and
-            explanations of failures) call pure functions only.
 
     Examples:
-        @internal_action("my.norm", pure=True)
+        @internal_action("my.norm")
         def norm(x: float, y: float) -> float:
             return math.hypot(x, y)
     """
-    return _declare(ACTION, name, pure)
+    return _declare(ACTION, name)
 
 
 @overload
@@ -443,12 +438,12 @@ def arithmetic_function(name: str | F | None = None, /) -> object:
     return _declare(FUNCTION, name)
 
 
-def _declare(kind: str, name: str | F | None, pure: bool = False) -> F | Callable[[F], F]:
+def _declare(kind: str, name: str | F | None) -> F | Callable[[F], F]:
     if callable(name):
         return _mark(name, Declared(kind, name, None))
     if name is not None and (not isinstance(name, str) or "." not in name[1:] or name.startswith(".")):
         raise ValueError(f"the name of an {kind} must begin with the module, as in 'my.norm', not {name!r}")
-    return lambda function: _mark(function, Declared(kind, function, name, pure))
+    return lambda function: _mark(function, Declared(kind, function, name))
 
 
 def _mark(function: F, declared: Declared) -> F:
@@ -520,7 +515,7 @@ class Additions:
         self._places[name] = place
         try:
             if declared.kind == ACTION:
-                self.actions[name] = action_of(name, declared.function, declared.pure)
+                self.actions[name] = action_of(name, declared.function)
             else:
                 self.functions[name], self.arities[name] = function_of(name, declared.function)
         except Undeclarable as wrong:

@@ -2,13 +2,14 @@
 
 import re
 from collections.abc import Sequence
-from decimal import ROUND_HALF_UP, Decimal
-from decimal import Context as DecimalContext
+from decimal import ROUND_HALF_UP, Context, Decimal, localcontext
 
 from jacaros.agents.terms.text import double_text
 
-_SPECIFIER = re.compile(r"%(?:(\d+)\$)?([-#+ 0,(]*)(\d+)?(?:\.(\d+))?([a-zA-Z%])")
-_EXACT = DecimalContext(prec=2000, rounding=ROUND_HALF_UP)
+_SPECIFIER = re.compile(
+    r"%(?:(?P<index>\d+)\$)?(?P<flags>[-#+ 0,(]*)(?P<width>\d+)?(?:\.(?P<places>\d+))?(?P<conversion>[a-zA-Z%])"
+)
+_EXACT = Context(prec=2000, rounding=ROUND_HALF_UP)
 
 
 def java_format(template: str, arguments: Sequence[float | str | bool]) -> str:
@@ -25,18 +26,17 @@ def java_format(template: str, arguments: Sequence[float | str | bool]) -> str:
     for match in _SPECIFIER.finditer(template):
         result.append(_literal(template[position : match.start()]))
         position = match.end()
-        index, flags, width, precision, conversion = match.groups()
-        if conversion in "n%":
-            piece = "\n" if conversion == "n" else "%"
+        flags, width = match["flags"], int(match["width"] or 0)
+        if match["conversion"] in "n%":
+            piece = "\n" if match["conversion"] == "n" else "%"
         else:
-            if index is None:
-                following += 1
-            number = following if index is None else int(index)
+            following += match["index"] is None
+            number = int(match["index"] or following)
             if not 1 <= number <= len(arguments):
                 raise ValueError(f"missing argument for {match.group()}")
-            places = None if precision is None else int(precision)
-            piece = _convert(arguments[number - 1], conversion, flags, int(width or 0), places)
-        result.append(piece.ljust(int(width or 0)) if "-" in flags else piece.rjust(int(width or 0)))
+            places = None if match["places"] is None else int(match["places"])
+            piece = _convert(arguments[number - 1], match["conversion"], flags, width, places)
+        result.append(piece.ljust(width) if "-" in flags else piece.rjust(width))
     result.append(_literal(template[position:]))
     return "".join(result)
 
@@ -70,45 +70,28 @@ def _plain(value: float | str | bool) -> str:
 
 
 def _signed(value: float, conversion: str, flags: str, width: int, places: int) -> str:
-    negative = str(value).startswith("-")
     before = after = ""
-    if negative:
+    if str(value).startswith("-"):
         before, after = ("(", ")") if "(" in flags else ("-", "")
     elif "+" in flags or " " in flags:
         before = "+" if "+" in flags else " "
     if value != value or value in (float("inf"), float("-inf")):
         return before + double_text(abs(value)) + after
-    digits = _digits(Decimal(repr(abs(value))), conversion, places)
-    if "," in flags and "e" not in digits:
-        whole, point, fraction = digits.partition(".")
-        digits = f"{int(whole):,}{point}{fraction}"
-    if "0" in flags:
-        digits = digits.rjust(width - len(before) - len(after), "0")
-    return before + digits + after
+    digits = _digits(Decimal(repr(abs(value))), conversion, places, "," if "," in flags else "")
+    return before + (digits.rjust(width - len(before + after), "0") if "0" in flags else digits) + after
 
 
-def _digits(value: Decimal, conversion: str, places: int) -> str:
-    if conversion == "f":
-        return _fixed(value, places)
-    if conversion == "e":
-        return _scientific(value, places)
-    significant = max(places, 1)
-    rounded = value and DecimalContext(prec=significant, rounding=ROUND_HALF_UP).plus(value)
-    if rounded == 0:
-        return _fixed(value, significant - 1)
-    if Decimal("0.0001") <= rounded < Decimal(10) ** significant:
-        return _fixed(value, significant - rounded.adjusted() - 1)
-    return _scientific(value, significant - 1)
-
-
-def _fixed(value: Decimal, places: int) -> str:
-    return f"{value.quantize(Decimal(1).scaleb(-places), context=_EXACT):f}"
-
-
-def _scientific(value: Decimal, places: int) -> str:
-    if value == 0:
-        return f"{_fixed(value, places)}e+00"
-    rounded = DecimalContext(prec=places + 1, rounding=ROUND_HALF_UP).plus(value)
-    digits = "".join(map(str, rounded.as_tuple().digits)).ljust(places + 1, "0")
-    point = "." if places else ""
-    return f"{digits[0]}{point}{digits[1:]}e{rounded.adjusted():+03d}"
+def _digits(value: Decimal, conversion: str, places: int, comma: str) -> str:
+    with localcontext(_EXACT):
+        if conversion == "g":
+            significant = max(places, 1)
+            rounded = Context(prec=significant, rounding=ROUND_HALF_UP).plus(value)
+            if not rounded or Decimal("0.0001") <= rounded < Decimal(10) ** significant:
+                conversion, places = "f", significant - (rounded.adjusted() if rounded else 0) - 1
+            else:
+                conversion, places = "e", significant - 1
+        if conversion == "f":
+            return f"{value:{comma}.{places}f}"
+        # Java writes two digits of the exponent at least.
+        digits, _, exponent = f"{value:.{places}e}".partition("e")
+        return f"{digits}e{int(exponent) if value else 0:+03d}"
