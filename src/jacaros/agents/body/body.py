@@ -17,7 +17,7 @@ from jacaros.agents.body.values import (
     unquoted,
 )
 from jacaros.agents.mind.mind import Mind
-from jacaros.agents.mind.state.act import NEEDS, Act, Completion
+from jacaros.agents.mind.state.act import NEEDS, Act, Activity, Completion
 from jacaros.agents.terms.text import display, text
 from jacaros.agents.terms.values import (
     NIL,
@@ -40,7 +40,6 @@ from jacaros.artifacts.env.ports import ENDED, OnOutcome, UnderWay, Workspace
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.presence.presence import (
     ANYWHERE,
-    Activity,
     Direction,
     Filter,
     UnknownOperation,

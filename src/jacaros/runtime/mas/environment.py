@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 from jacaros.agents.body.body import AgentBody
 from jacaros.agents.body.values import PerceptWriter, References
 from jacaros.agents.language.diagnostics import Diagnostic
+from jacaros.agents.mind.state.act import Activity
 from jacaros.artifacts.env.environment import Environment
 from jacaros.artifacts.env.errors import OperationFailed, UnknownArtifactType
 from jacaros.artifacts.env.ports import Workspace, ignore_made
 from jacaros.artifacts.env.values import Atom
 from jacaros.artifacts.kernel.acceptance import Unsuitable
 from jacaros.artifacts.kernel.declaration import Parameter
-from jacaros.artifacts.presence.presence import Account, Activity, Presence
+from jacaros.artifacts.presence.presence import Account, Presence
 from jacaros.runtime.clock import Clock
 from jacaros.runtime.files.python_modules import ModuleUnreadable, NotImported, ProjectModules
 from jacaros.runtime.files.texts import close_matches

@@ -6,10 +6,9 @@ from collections.abc import Awaitable, Callable, Sequence
 from contextlib import AbstractContextManager, suppress
 from typing import Generic, TypeVar
 
-from jacaros.agents.mind.state.act import SpeechAct, message_id
+from jacaros.agents.mind.state.act import Activity, SpeechAct, message_id
 from jacaros.agents.python.agent import ReceivedMessage
 from jacaros.agents.terms.values import Term
-from jacaros.artifacts.presence.presence import Activity
 from jacaros.runtime.clock import Clock
 from jacaros.runtime.mas.embedding.waits import UnknownAgent, fail
 from jacaros.runtime.mas.scheduler import AgentTimer

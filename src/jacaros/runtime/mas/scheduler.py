@@ -15,8 +15,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
-from jacaros.agents.mind.state.act import TimerHandle
-from jacaros.artifacts.presence.presence import Activity
+from jacaros.agents.mind.state.act import Activity, TimerHandle
 from jacaros.runtime.clock import Clock, real_time, run_context
 from jacaros.runtime.mas.console import entered
 

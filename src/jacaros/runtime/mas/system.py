@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 import jacaros.agents.mind.actions.standard  # noqa: F401 - fills the table of internal actions
 from jacaros.agents.language.nodes import Program
 from jacaros.agents.mind.mind import Mind
-from jacaros.agents.mind.state.act import Services
-from jacaros.artifacts.presence.presence import Activity
+from jacaros.agents.mind.state.act import Activity, Services
 from jacaros.runtime.clock import Clock, of_run
 from jacaros.runtime.files.python_modules import ProjectModules
 from jacaros.runtime.mas.agents.host import AgentHost

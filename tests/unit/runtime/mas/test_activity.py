@@ -1,6 +1,6 @@
 """Timers of agents."""
 
-from jacaros.artifacts.presence.presence import Activity
+from jacaros.agents.mind.state.act import Activity
 from jacaros.runtime.clock import VirtualClock, run
 from jacaros.runtime.mas.scheduler import AgentTimer
 

@@ -186,6 +186,24 @@ class TimerHandle(Protocol):
         """Cancel the call."""
 
 
+class Activity:
+    """Counts what will give an agent something to do, so that a run can detect idleness.
+
+    Worlds, batteries and processes of artifacts do not count: they never end.
+    """
+
+    def __init__(self) -> None:
+        self.pending = 0
+
+    def begin(self) -> None:
+        """Something has begun."""
+        self.pending += 1
+
+    def end(self) -> None:
+        """It has ended, or was cancelled."""
+        self.pending -= 1
+
+
 class Services(Protocol):
     """The directory facilitator: which agents provide which services."""
 

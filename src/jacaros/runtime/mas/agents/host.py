@@ -7,9 +7,16 @@ from random import Random
 from typing import TYPE_CHECKING, Any, Protocol
 
 from jacaros.agents.language.nodes import Literal
-from jacaros.agents.mind.state.act import NEEDS, Act, AgentSystem, Completion, SpeechAct, TimerHandle
+from jacaros.agents.mind.state.act import (
+    NEEDS,
+    Act,
+    Activity,
+    AgentSystem,
+    Completion,
+    SpeechAct,
+    TimerHandle,
+)
 from jacaros.agents.terms.values import String, atom, functor
-from jacaros.artifacts.presence.presence import Activity
 from jacaros.runtime.clock import Clock
 from jacaros.runtime.mas.console import RunConsole
 from jacaros.runtime.mas.scheduler import AgentTimer, Scheduler

@@ -12,12 +12,12 @@ from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.agents.language.loader import parse_literals
 from jacaros.agents.language.lowering import lower_value
 from jacaros.agents.language.nodes import Literal as LiteralNode
-from jacaros.agents.mind.state.act import SpeechAct
+from jacaros.agents.mind.state.act import Activity, SpeechAct
 from jacaros.agents.python.agent import Literal, ReceivedMessage, literal_of, overridden
 from jacaros.agents.python.python_agent import PythonAgent
 from jacaros.artifacts.env.errors import WorkspaceError
 from jacaros.artifacts.kernel.faults import error_text
-from jacaros.artifacts.presence.presence import Activity, OperationObserver
+from jacaros.artifacts.presence.presence import OperationObserver
 from jacaros.artifacts.presence.session import Session
 from jacaros.runtime.clock import Clock
 from jacaros.runtime.errors import JacarosError

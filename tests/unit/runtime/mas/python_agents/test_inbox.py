@@ -4,9 +4,8 @@ import asyncio
 
 import pytest
 
-from jacaros.agents.mind.state.act import SpeechAct
+from jacaros.agents.mind.state.act import Activity, SpeechAct
 from jacaros.agents.terms.values import atom
-from jacaros.artifacts.presence.presence import Activity
 from jacaros.runtime.clock import clock_of
 from jacaros.runtime.mas.agents.python_agents import TaskActivity
 from jacaros.runtime.mas.messaging import Messaging

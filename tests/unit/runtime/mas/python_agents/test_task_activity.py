@@ -4,7 +4,7 @@ import asyncio
 from collections.abc import Coroutine
 from typing import Any
 
-from jacaros.artifacts.presence.presence import Activity
+from jacaros.agents.mind.state.act import Activity
 from jacaros.runtime.mas.agents.python_agents import TaskActivity
 
 
