@@ -256,12 +256,6 @@ def test_known_records_of_a_newer_version_are_read_with_a_warning(tmp_path: Path
     assert "version 9" in warning
 
 
-def test_a_recording_of_version_1_is_read_without_a_warning(tmp_path: Path) -> None:
-    path = tmp_path / "run.jsonl"
-    path.write_text('{"kind": "world", "version": 1, "world": {"name": "nowhere"}}\n', encoding="utf-8")
-    assert Recording.read(path).warnings == []
-
-
 def test_a_truncated_recording_is_read_with_a_warning(tmp_path: Path) -> None:
     path = tmp_path / "run.jsonl"
     record(path)

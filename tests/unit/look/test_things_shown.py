@@ -18,7 +18,7 @@ from jacaros.look.page.recorder import Recorder
 from jacaros.look.page.scene import SceneState
 from jacaros.look.page.terminal_view import TerminalView
 from jacaros.look.records.records import EVENTS
-from jacaros.robots.world import GroundTruth, World
+from jacaros.robots.world import World
 from jacaros.robots.world.data.ground_truth import JsonRecord
 
 DIRT = """
@@ -206,30 +206,8 @@ def test_a_robot_that_is_moved_by_hand_is_not_an_object_that_is_put_down() -> No
     assert "<title>cup</title>" in shown.picture
 
 
-def test_older_recordings_in_which_both_had_one_name_are_read(tmp_path: Path) -> None:
-    moved = {"robot": "turtlebot", "x": 0.5, "y": 0.5, "yaw": 0.0}
-    put_down = {"robot": "turtlebot", "object": "cup", "x": 0.0, "y": 1.0}
-    header = {"kind": "world", "version": 1, "world": drawing(OBJECTS)}
-    events = [
-        {"kind": "event", "t": t, "event": "placed", "data": data} for t, data in ((1, moved), (2, put_down))
-    ]
-    path = tmp_path / "run.jsonl"
-    path.write_text("".join(json.dumps(each) + "\n" for each in (header, *events)), encoding="utf-8")
-    recording = Recording.read(path)
-    assert [kind for _, kind, _ in recording.events] == ["robot_placed", "placed"]
-    assert recording.warnings == []
-    assert "<title>cup</title>" in picture_svg(recording)
-    truth = tmp_path / "truth.jsonl"
-    place = {"time": 1.0, "robot": "turtlebot", "x": 0.5, "y": 0.5, "yaw": 0.0}
-    of_truth = {"kind": "event", "event": "placed", **place, "data": {"x": 0.5, "y": 0.5, "yaw": 0.0}}
-    bare = {**of_truth, "event": "docked", "data": {}}
-    lines = "".join(json.dumps(each) + "\n" for each in (header, of_truth, bare))
-    truth.write_text(lines, encoding="utf-8")
-    assert [event.kind for event in GroundTruth.read(truth).events] == ["robot_placed", "docked"]
-
-
 def test_an_event_that_lacks_what_its_readers_need_is_skipped_with_a_warning(tmp_path: Path) -> None:
-    header = {"kind": "world", "version": 1, "world": drawing(OBJECTS)}
+    header = {"kind": "world", "version": 2, "world": drawing(OBJECTS)}
     event = {"kind": "event", "t": 2.5, "event": "picked", "data": {"robot": "turtlebot"}}
     (tmp_path / "run.jsonl").write_text(f"{json.dumps(header)}\n{json.dumps(event)}\n", encoding="utf-8")
     recording = Recording.read(tmp_path / "run.jsonl")

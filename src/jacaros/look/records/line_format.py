@@ -1,6 +1,5 @@
 """Records as lines of JSON, plain or compressed."""
 
-import contextlib
 import json
 import zlib
 from collections.abc import Mapping, Sequence
@@ -13,7 +12,7 @@ from jacaros.look.records.records import RecordingLine
 _MEMBER = 1 << 20
 """Size of the lines in one independently readable part of a compressed file, in bytes."""
 _LEVEL = 1
-_PIECE = 1 << 16
+_PIECE = 1 << 12
 _GZIP = 31
 """Window of zlib for the gzip format."""
 
@@ -87,7 +86,7 @@ MAGIC = b"\x1f\x8b\x08"
 def unpacked(data: bytes, largest: int) -> tuple[bytes, bool]:
     """Return the readable content of a compressed file, and whether a part of it is damaged.
 
-    A truncated file is not damaged.
+    A truncated file is not damaged. The content of a damaged member is lost from about the damage on.
 
     Args:
         data: file content.
@@ -97,51 +96,30 @@ def unpacked(data: bytes, largest: int) -> tuple[bytes, bool]:
     broken = False
     left, at = largest, data.find(MAGIC)
     while at >= 0 and left > 0:
-        member = _Member(data, at, left)
-        found.append(member.content)
-        left -= len(member.content)
-        if member.end is None:
+        content, end, is_damaged = _member(data, at, left)
+        found.append(content)
+        left -= len(content)
+        if end is None:
             found.append(b"\n")  # the missing part begins in the middle of a line
-        broken = broken or member.broken
-        at = data.find(MAGIC, at + 1 if member.end is None else member.end)
+        broken = broken or is_damaged
+        at = data.find(MAGIC, at + 1 if end is None else end)
     return b"".join(found), broken
 
 
-class _Member:
-    """The readable part of a member of a compressed file.
-
-    Attributes:
-        content: decompressed content.
-        end: position of its end in the file; None if it is truncated or damaged.
-        broken: whether it contains invalid data.
-    """
-
-    def __init__(self, data: bytes, start: int, largest: int) -> None:
-        self.end: int | None = None
-        self.broken = False
-        self._unpacker = zlib.decompressobj(_GZIP)
-        self._pieces: list[bytes] = []
-        self._left = largest
-        for at in range(start, len(data), _PIECE):
-            piece = data[at : at + _PIECE]
-            if not self._take(piece) or self._left <= 0:
-                break
-            if self._unpacker.eof:
-                self.end = at + len(piece) - len(self._unpacker.unused_data)
-                break
-        self.content = b"".join(self._pieces)
-
-    def _take(self, piece: bytes) -> bool:
-        before = self._unpacker.copy()
+def _member(data: bytes, start: int, largest: int) -> tuple[bytes, int | None, bool]:
+    """Return the readable content of a member, its end in the file (None if missing), and whether it is damaged."""
+    unpacker = zlib.decompressobj(_GZIP)
+    pieces: list[bytes] = []
+    left = largest
+    for at in range(start, len(data), _PIECE):
         try:
-            self._add(self._unpacker.decompress(piece, self._left))
+            pieces.append(unpacker.decompress(data[at : at + _PIECE], left))
         except zlib.error:
-            self.broken = True
-            with contextlib.suppress(zlib.error):  # up to the invalid byte
-                for at in range(len(piece)):
-                    self._add(before.decompress(piece[at : at + 1], self._left))
-        return not self.broken
-
-    def _add(self, content: bytes) -> None:
-        self._pieces.append(content)
-        self._left -= len(content)
+            return b"".join(pieces), None, True
+        left -= len(pieces[-1])
+        if unpacker.eof:
+            end = min(at + _PIECE, len(data)) - len(unpacker.unused_data)
+            return b"".join(pieces), end, False
+        if left <= 0:
+            break
+    return b"".join(pieces), None, False

@@ -21,7 +21,7 @@ from jacaros.look.records.records import (
     WorldLine,
     decoded,
 )
-from jacaros.robots.world.data.ground_truth import RobotState, present_kind
+from jacaros.robots.world.data.ground_truth import RobotState
 from jacaros.runtime.errors import JacarosError
 from jacaros.runtime.files.texts import LARGEST, file_bytes, printable, text_of
 
@@ -174,7 +174,7 @@ class Recording:
             case TextLine():
                 self.texts.append((record.t, record.agent, record.text))
             case EventLine():
-                self._take_event(record.t, present_kind(record.event, record.data), record.data)
+                self._take_event(record.t, record.event, record.data)
 
     def _take_event(self, t: float, kind: str, data: Data) -> None:
         try:

@@ -12,7 +12,7 @@ from msgspec import Meta, Struct, ValidationError, convert, defstruct, field, to
 from jacaros.robots.world.data.ground_truth import FIELDS
 
 VERSION = 2
-"""Version of the written format; older versions are read completely, and known records of newer ones."""
+"""Version of the written format; known records of newer versions are read, too."""
 
 Data = Mapping[str, Any]
 """The data of an event as plain JSON data."""

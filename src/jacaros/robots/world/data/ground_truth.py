@@ -71,11 +71,6 @@ FIELDS: Final[Mapping[str, tuple[str, ...]]] = {
 """The kinds of events with the data that every event of the kind has: for writers, readers, pages and pictures."""
 
 
-def present_kind(kind: str, data: Mapping[str, Any]) -> str:
-    """Return the kind of a recorded event; in older recordings, that of a robot moved by hand was ``placed``, too."""
-    return "robot_placed" if kind == "placed" and "object" not in data else kind
-
-
 class RobotState(NamedTuple):
     """A robot at a time: pose (metres, radians), battery (percent), and whether it charges and touches something.
 
@@ -250,7 +245,7 @@ class GroundTruth:
         if record["kind"] == "sample":
             self.record_sample(record["robot"], PathSample(*(record[name] for name in PathSample._fields)))
         elif record["kind"] == "event":
-            record = {**record, "kind": present_kind(record["event"], record["data"])}
+            record = {**record, "kind": record["event"]}
             self._add(RobotEvent(*(record[name] for name in RobotEvent._fields)))
         elif record["kind"] == "end":
             self.dirt |= {(room, kind): grams for room, kind, grams in record.get("dirt", ())}
