@@ -15,17 +15,7 @@ except ModuleNotFoundError as missing:
     ) from missing
 
 from jacaros.artifacts.behaviour_trees.act import Act, Failure, FromBlackboard, ToBlackboard
-from jacaros.artifacts.behaviour_trees.behaviours import (
-    ArtifactBehaviour,
-    HasProperty,
-    OnSignal,
-    PropertiesToBlackboard,
-    PropertyCheck,
-    Timeout,
-    Timer,
-    WaitForProperty,
-    WaitForSignal,
-)
+from jacaros.artifacts.behaviour_trees.behaviours import ArtifactBehaviour, HasProperty, PropertyCheck
 from jacaros.artifacts.behaviour_trees.tree_runner import TreeRunner
 
 __all__ = [
@@ -34,13 +24,7 @@ __all__ = [
     "Failure",
     "FromBlackboard",
     "HasProperty",
-    "OnSignal",
-    "PropertiesToBlackboard",
     "PropertyCheck",
-    "Timeout",
-    "Timer",
     "ToBlackboard",
     "TreeRunner",
-    "WaitForProperty",
-    "WaitForSignal",
 ]

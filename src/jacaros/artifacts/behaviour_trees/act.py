@@ -13,6 +13,9 @@ from jacaros.artifacts.presence.session import SessionOperation
 MISTAKES = ("unknown_operation", "wrong_op_arguments")
 """Functors of reasons that indicate a mistake in the tree, not in the world; these are logged, too."""
 
+FAILURE = "failure"
+"""Blackboard key of the last failure."""
+
 
 @dataclass(frozen=True, slots=True)
 class Failure:
@@ -41,7 +44,6 @@ class Act(ArtifactBehaviour):
         artifact: the artifact that runs it; default: the one that `Session.act` chooses.
         timeout: maximum time in seconds of the run's clock.
         urgency: precedence for the resources that it uses; higher first.
-        failure_key: blackboard key for the `Failure`, None for none.
         name: name of the behaviour; default: the call, such as ``moveForward(1)``.
 
     Attributes:
@@ -55,13 +57,11 @@ class Act(ArtifactBehaviour):
         artifact: ArtifactId | str | None = None,
         timeout: float | None = None,
         urgency: int = 0,
-        failure_key: str | None = "failure",
         name: str | None = None,
     ) -> None:
         super().__init__(name or _written(operation, arguments))
         self.operation, self.arguments = operation, arguments
         self.artifact, self.timeout, self.urgency = artifact, timeout, urgency
-        self.failure_key = failure_key
         self.outcome: OperationOutcome | None = None
         self._handle: SessionOperation | None = None
         self._results: dict[str, Out] = {}
@@ -70,8 +70,7 @@ class Act(ArtifactBehaviour):
                 self.may_read(argument.key)
             elif isinstance(argument, ToBlackboard):
                 self.may_write(argument.key)
-        if failure_key is not None:
-            self.may_write(failure_key)
+        self.may_write(FAILURE)
 
     def initialise(self) -> None:
         """Start the operation."""
@@ -135,8 +134,7 @@ class Act(ArtifactBehaviour):
         message = outcome.message or f"{self.operation} failed"
         reason = outcome.reason
         self.feedback_message = message if reason is None else f"{message} [{text(reason, True)}]"
-        if self.failure_key is not None:
-            self.board.set(self.failure_key, Failure(self.name, message, reason))
+        self.board.set(FAILURE, Failure(self.name, message, reason))
         if isinstance(reason, Structure) and reason.functor in MISTAKES:
             self.warn(message)
         return Status.FAILURE

@@ -221,10 +221,9 @@ def follow(clock: Clock, behaviours: Iterable[Behaviour]) -> Callable[[], None]:
             _bind(behaviour, clock)
             bound.append(behaviour)
         elif clock.virtual:
-            ours = f"jacaros.artifacts.behaviour_trees.{kind.__name__}"
             raise TypeError(
                 f"the behaviour `{behaviour.name}` ({type(behaviour).__name__}) follows the time of day, not the virtual "
-                f"clock of the run; derive it from {ours}"
+                "clock of the run; derive it from ArtifactBehaviour, and use self.clock"
             )
 
     def end() -> None:

@@ -50,14 +50,6 @@ async def test_a_failure_logs_its_reason_and_writes_it_to_the_blackboard(rails):
     )
 
 
-async def test_the_place_of_the_failure_can_be_chosen(rails):
-    await rails.runner(Act("drive", 20, failure_key="robot1/trouble")).run()
-    assert Blackboard.get("/robot1/trouble").message == "a wall"
-    Blackboard.clear()
-    await rails.runner(Act("drive", 20, failure_key=None)).run()
-    assert Blackboard.storage == {}
-
-
 @pytest.mark.parametrize(
     ("act", "told"),
     [

@@ -10,17 +10,14 @@ import pytest
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.composites import Selector, Sequence
+from py_trees.decorators import FailureIsRunning
 
 from jacaros.artifacts import WorkspaceError
 from jacaros.artifacts.behaviour_trees import (
     Act,
     ArtifactBehaviour,
-    HasProperty,
     PropertyCheck,
-    Timeout,
-    Timer,
     TreeRunner,
-    WaitForProperty,
 )
 
 
@@ -43,8 +40,8 @@ class Wrong(Behaviour):
 
 
 async def test_it_ticks_at_its_period(rails):
-    await rails.runner(Timer(0.5), period=0.2).run()
-    assert rails.ticks == [0, 0.2, 0.4, 0.5]
+    await rails.runner(py_trees.timers.Timer("rest", 0.5), period=0.2).run()
+    assert rails.ticks == [0, 0.2, 0.4, 0.6]
 
 
 async def test_without_a_period_it_ticks_only_when_something_happens(rails):
@@ -59,7 +56,7 @@ async def test_what_comes_together_is_one_tick(rails):
         for level in (90, 80, 70):
             await rails.other.act("drain", level)
 
-    wait = WaitForProperty("battery", lambda level: level < 75)
+    wait = FailureIsRunning("low", PropertyCheck("battery", lambda level: level < 75))
     await asyncio.gather(rails.runner(wait, period=None).run(), changes())
     assert rails.ticks == [0, 1.0]
 
@@ -212,37 +209,10 @@ async def test_a_tree_needs_a_root(rails, root):
 
 async def test_a_tree_needs_a_session_and_a_positive_period(rails):
     with pytest.raises(TypeError, match=r"found 'driver'; a PythonAgent has one: self\.session"):
-        TreeRunner(Timer(1), "driver")
+        TreeRunner(Act("drive", 1), "driver")
     for period in (0, -1, float("nan")):
         with pytest.raises(ValueError, match="positive number of seconds"):
-            TreeRunner(Timer(1), rails.session, period=period)
-
-
-async def test_a_timer_starts_again(rails):
-    root = py_trees.decorators.Repeat("twice", Timer(1.5), num_success=2)
-    await rails.runner(root).run()
-    assert rails.clock.elapsed == pytest.approx(3.0, abs=0.15)
-
-
-async def test_a_timer_is_over_when_it_is_interrupted(rails, reactive):
-    root = reactive("sequence", HasProperty("battery", 100), Timer(500))
-    await asyncio.gather(rails.runner(root).run(), rails.at(2, "drain", 10))
-    assert rails.clock.pending() == []
-
-
-async def test_what_takes_too_long_is_interrupted(rails):
-    drive = Act("drive", 9)
-    late = Timeout(drive, 2.5)
-    assert await rails.runner(late).run() is Status.FAILURE
-    assert (late.name, late.feedback_message) == ("at most 2.5 s", "took longer than 2.5 s")
-    assert drive.status is Status.INVALID
-    assert rails.session.value("at") == 2
-    assert rails.clock.elapsed == pytest.approx(2.5, abs=0.011)
-
-
-@pytest.mark.parametrize(("metres", "status"), [(2, Status.SUCCESS), (20, Status.FAILURE)])
-async def test_what_is_quick_enough_ends_by_itself(rails, metres, status):
-    assert await rails.runner(Timeout(Act("drive", metres), 11)).run() is status
+            TreeRunner(Act("drive", 1), rails.session, period=period)
 
 
 def test_without_py_trees_the_error_has_help():
@@ -258,7 +228,9 @@ async def test_an_observer_receives_behaviours_and_operations_from_beginning_to_
     told = []
     rails.session.observer = lambda state, text, which, why: told.append((state, text, why))
     far = Sequence("tour", memory=True, children=[Act("drive", 3), Act("drive", 30)])
-    await rails.runner(Selector("whatever", memory=True, children=[far, Timer(0.5)])).run()
+    await rails.runner(
+        Selector("whatever", memory=True, children=[far, py_trees.timers.Timer("0.5 s", 0.5)])
+    ).run()
     assert [news for news in told if news[0] == "executing"] == [
         ("executing", text, "") for text in ("whatever", "tour", "drive(3)", "drive(30)", "0.5 s")
     ]
@@ -288,6 +260,8 @@ async def test_a_timer_that_cannot_follow_a_virtual_clock_is_refused(rails):
         def update(self):
             return super().update()
 
-    with pytest.raises(TypeError, match=r"`rest` \(Rest\) follows the time of day.*behaviour_trees\.Timer"):
+    with pytest.raises(
+        TypeError, match=r"`rest` \(Rest\) follows the time of day.*derive it from ArtifactBehaviour"
+    ):
         await rails.runner(Rest("rest", 5.0)).run()
-    await rails.runner(Timer(1.0)).run()
+    await rails.runner(py_trees.timers.Timer("rest", 1.0)).run()
