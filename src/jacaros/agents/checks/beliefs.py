@@ -28,34 +28,59 @@ _ENDINGS: Final = "sdr"
 """Letters that make another form of a word."""
 
 
+Key = tuple[str, int]
+"""Name and number of arguments."""
+
+
 @dataclass
 class Beliefs:
     """The names of beliefs in a program.
 
     Attributes:
         asked: beliefs that plans react to and conditions ask for, by name.
-        made: names of beliefs that the program gives itself and others.
+        made_as: beliefs that the program gives itself and others.
         mentioned: all other names in it, and words of strings: they may become beliefs in ways that are not visible.
         is_open: beliefs, plans or agents come from elsewhere at run time.
+        events: events that plans and ``.wait`` react to, sign and belief; default namespace only, without strong negation.
+        concluded, mentioned_as: the conclusions of rules; as `mentioned`, without words.
+        said: words of strings that are not only printed.
         facts: initial beliefs, by name.
+        noted: beliefs that the agent itself adds: initial ones, and those of steps without a source annotation.
+        brought: beliefs that come in other ways: from messages, with a source annotation, from plans for tests, or in
+            ways that are not visible, because they appear in other terms.
     """
 
     asked: dict[str, list[nodes.Literal]] = field(default_factory=dict)
-    made: set[str] = field(default_factory=set)
     mentioned: set[str] = field(default_factory=set)
     is_open: bool = False
+    events: dict[Key, list[tuple[str, nodes.Literal]]] = field(default_factory=dict)
+    made_as: set[Key] = field(default_factory=set)
+    concluded: dict[Key, nodes.Rule] = field(default_factory=dict)
+    mentioned_as: set[Key] = field(default_factory=set)
+    said: set[str] = field(default_factory=set)
     facts: dict[str, list[nodes.Literal]] = field(default_factory=dict)
+    noted: set[Key] = field(default_factory=set)
+    brought: set[Key] = field(default_factory=set)
+
+    @property
+    def made(self) -> set[str]:
+        """Names that the program gives to its own beliefs and to those of others."""
+        return {name for name, _ in (*self.made_as, *self.concluded)}
 
 
 def beliefs_of(program: nodes.Program, actions: Mapping[str, Declaration]) -> Beliefs:
     """Collect the beliefs of a program and its includes; *actions* are the internal actions by name."""
     found = Beliefs()
+    heads: set[int] = set()
     for belief in program.beliefs:
+        head = belief.head if isinstance(belief, nodes.Rule) else belief
+        heads.add(id(head))
         if isinstance(belief, nodes.Rule):
-            found.made.add(_name(belief.head))
+            found.concluded.setdefault(key_of(belief.head), belief)
         else:
-            found.made.add(_name(belief))
+            found.made_as.update(_keys(belief))
             found.facts.setdefault(_name(belief), []).append(belief)
+            _note(belief, found)
     asked: set[int] = set()
     for clause in (*clauses(program), *program.goals):
         for node, is_asked in in_order(clause):
@@ -63,12 +88,45 @@ def beliefs_of(program: nodes.Program, actions: Mapping[str, Declaration]) -> Be
                 _look_at_call(node, actions.get(node.name, UNDECLARED), asked, found)
             else:
                 _look_at(node, is_asked, asked, found)
+    for plan in program.plans:
+        _react(plan, found)
+    printed: set[int] = set()
+    noted = _notes(program)
     for node in walk(program.beliefs, program.goals, program.plans):
-        if isinstance(node, nodes.Literal) and id(node) not in asked:
+        if isinstance(node, nodes.InternalAction) and actions.get(node.name, UNDECLARED).prints:
+            printed.update(map(id, walk(node.arguments)))
+        elif isinstance(node, nodes.Literal) and id(node) not in asked:
             found.mentioned.add(_name(node))
+            if id(node) not in heads and id(node) not in printed:
+                found.mentioned_as.add(key_of(node))
+                if id(node) not in noted:
+                    found.brought.add(key_of(node))
         elif isinstance(node, nodes.String):
-            found.mentioned.update(_WORD.findall(node.value))
+            words = _WORD.findall(node.value)
+            found.mentioned.update(words)
+            if id(node) not in printed:
+                found.said.update(words)
     return found
+
+
+def _react(plan: nodes.Plan, found: Beliefs) -> None:
+    """Note the belief events that trigger a plan and its sub-plans."""
+    if plan.trigger.kind == "" and plan.trigger.operator in "+-":
+        _note_event(plan.trigger.operator, plan.trigger.literal, found)
+    for inner in plan.subplans:
+        _react(inner, found)
+
+
+def _note_event(sign: str, literal: nodes.Node, found: Beliefs) -> None:
+    if isinstance(literal, nodes.Literal) and literal.namespace is None and not literal.negated:
+        found.events.setdefault(key_of(literal), []).append((sign, literal))
+
+
+def _awaited(wait: nodes.InternalAction) -> Iterator[nodes.BeliefChange]:
+    """Yield the event ``{+b}`` or ``{-b}`` that a ``.wait`` waits for: it parses as a belief change."""
+    for argument in wait.arguments:
+        if isinstance(argument, nodes.BodyTerm):
+            yield from (step for step in argument.body.steps if isinstance(step, nodes.BeliefChange))
 
 
 def _look_at(node: nodes.Node, is_asked: bool, asked: set[int], found: Beliefs) -> None:
@@ -77,34 +135,32 @@ def _look_at(node: nodes.Node, is_asked: bool, asked: set[int], found: Beliefs) 
             _ask(node.literal, asked, found)
         elif node.kind == "?":
             _make(node.literal, found)
+            found.brought.update(_keys(node.literal))
     elif isinstance(node, nodes.BeliefChange):
         if id(node) in asked:
             return
         found.is_open = found.is_open or isinstance(node.operand, nodes.Variable)
-        if "+" in node.operator:
+        if isinstance(node.operand, nodes.Literal) and "+" in node.operator:
             _make(node.operand, found)
+            _note(node.operand, found)
     elif is_asked:
         _ask(node, asked, found)
 
 
 def _look_at_call(node: nodes.InternalAction, action: Declaration, asked: set[int], found: Beliefs) -> None:
-    for change in _awaited(node) if action.awaits else ():
-        asked.add(id(change))
-        _ask(change.operand, asked, found)
+    if action.awaits:
+        for change in _awaited(node):
+            asked.add(id(change))
+            _ask(change.operand, asked, found)
+            _note_event(change.operator, change.operand, found)
     found.is_open = found.is_open or action.brings_in
     if action.performative is not None and node.arguments:
         _make(node.arguments[-1], found)
+        found.brought.update(_keys(node.arguments[-1]))
     if action.condition is not None:
         for condition in node.arguments[action.condition :][:1]:
             for part in parts_of(condition):
                 _ask(part, asked, found)
-
-
-def _awaited(wait: nodes.InternalAction) -> Iterator[nodes.BeliefChange]:
-    """Yield the event ``{+b}`` or ``{-b}`` that a ``.wait`` waits for: it parses as a belief change."""
-    for argument in wait.arguments:
-        if isinstance(argument, nodes.BodyTerm):
-            yield from (step for step in argument.body.steps if isinstance(step, nodes.BeliefChange))
 
 
 def _ask(node: nodes.Node, asked: set[int], found: Beliefs) -> None:
@@ -116,9 +172,29 @@ def _ask(node: nodes.Node, asked: set[int], found: Beliefs) -> None:
 
 def _make(term: nodes.Node, found: Beliefs) -> None:
     """Note a belief that is added, or a list of them."""
-    for node in term.items if isinstance(term, nodes.ListTerm) else (term,):
-        if isinstance(node, nodes.Literal):
-            found.made.add(_name(node))
+    found.made_as.update(_keys(term))
+
+
+def _notes(program: nodes.Program) -> set[int]:
+    """Return the literals that steps add or delete."""
+    steps = walk(program.plans)
+    return {id(step.operand) for step in steps if isinstance(step, nodes.BeliefChange)}
+
+
+def _note(belief: nodes.Literal, found: Beliefs) -> None:
+    """Note a belief whose source is the agent itself, unless its annotations may name another one."""
+    (found.noted if belief.annotations is None else found.brought).add(key_of(belief))
+
+
+def source_of(literal: nodes.Literal) -> str:
+    """Return the source that a literal asks for, such as ``percept``; empty if it asks for any."""
+    items = literal.annotations.items if literal.annotations is not None else ()
+    for each in items:
+        if isinstance(each, nodes.Literal) and each.functor == "source" and len(each.arguments) == 1:
+            source = each.arguments[0]
+            if isinstance(source, nodes.Literal) and not source.arguments:
+                return _name(source)
+    return ""
 
 
 def is_fact_of(asked: nodes.Literal, fact: nodes.Literal) -> bool:
@@ -134,6 +210,17 @@ def is_fact_of(asked: nodes.Literal, fact: nodes.Literal) -> bool:
         if not isinstance(one, nodes.Variable)
     ]
     return bool(pairs) and all(one == other for one, other in pairs)
+
+
+def _keys(term: nodes.Node) -> Iterator[Key]:
+    for node in term.items if isinstance(term, nodes.ListTerm) else (term,):
+        if isinstance(node, nodes.Literal):
+            yield key_of(node)
+
+
+def key_of(literal: nodes.Literal) -> Key:
+    """Name and number of arguments of a belief."""
+    return _name(literal), len(literal.arguments)
 
 
 def _name(literal: nodes.Literal) -> str:

@@ -11,12 +11,13 @@
 
 import re
 from bisect import bisect_left
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 from typing import Final
 
 from jacaros.agents.checks.formulas import (
     annotations_of,
+    contradiction,
     is_true,
     labelled,
     singletons,
@@ -37,7 +38,7 @@ from jacaros.agents.language import nodes
 from jacaros.agents.language.cursor import is_slip_of
 from jacaros.agents.language.diagnostics import LEVELS, Diagnostic, SourceFile, Span, problem
 from jacaros.agents.language.lexer import Comment, Token, tokenize
-from jacaros.agents.language.nodes import ByKind, is_ground, variables_in
+from jacaros.agents.language.nodes import ByKind, is_ground
 from jacaros.runtime.files.texts import did_you_mean, suggestion
 
 # Comments that switch warnings off.
@@ -133,6 +134,8 @@ def check(program: nodes.Program, known: KnownActions, errors: Sequence[Diagnost
         warnings += singletons(clause)
     facts = (belief for belief in program.beliefs if not isinstance(belief, nodes.Rule))
     warnings += [*singletons_of_facts(facts, "belief"), *singletons_of_facts(program.goals, "goal")]
+    if not errors:
+        warnings += narrow_handlers(program)
     return sorted(dict.fromkeys(warnings), key=place)
 
 
@@ -151,6 +154,7 @@ def _mistakes(program: nodes.Program, known: KnownActions, errors: Sequence[Diag
         *wrong_arguments(found, known),
         *acting_conditions(found, known),
         *unknown_performatives(found, known),
+        *contexts_never_true(found),
         *wrong_labels(found),
         *wrong_supervision(program.goals, found),
         *wrong_needs(found),
@@ -188,7 +192,7 @@ def _holds_any(span: Span | None, wrong: Mapping[int, Sequence[int]]) -> bool:
     return at < len(lines) and lines[at] <= span.end_line
 
 
-# Check for plans that can never be selected, and annotations of labels.
+# Check for plans that can never be selected, and for handlers that drop more than you may expect.
 
 _OWN_WORDS: Final = ("atomic", "breakpoint", "all_unifs", "urgency", "needs", "policy")
 """Annotations that have a meaning in labels, besides those that supervise."""
@@ -209,21 +213,13 @@ def never_selected(program: nodes.Program, found: ByKind, known: KnownActions) -
 
 
 def _shadowed(plans: Sequence[nodes.Plan]) -> Iterator[Diagnostic]:
-    taken: dict[object, nodes.Plan] = {}
+    taken = _Taken()
     for plan in plans:
         yield from _shadowed(plan.subplans)
         literal = plan.trigger.literal
         if isinstance(literal, nodes.Variable):
             continue
-        kind = (
-            plan.trigger.operator,
-            plan.trigger.kind,
-            nodes.replace(literal, arguments=(), annotations=None),
-        )
-        size = len(literal.arguments)
-        covers = ((kind, each, literal.annotations) for each in (size, literal.arguments))
-        plain = ((kind, each, None) for each in (size, literal.arguments))
-        before = next((taken[key] for key in (*plain, *covers) if key in taken), None)
+        before = taken.covering(plan.trigger, literal)
         if before is not None:
             if _is_made(plan):
                 continue
@@ -234,17 +230,61 @@ def _shadowed(plans: Sequence[nodes.Plan]) -> Iterator[Diagnostic]:
                 plan.trigger.span,
                 "give that plan a context, or move it after this one",
             )
-        elif is_true(plan.context) and is_ground(literal.annotations):
-            if is_ground(literal.arguments) and size:
-                taken[kind, literal.arguments, literal.annotations] = plan
-            elif _is_any(literal.arguments):
-                taken[kind, size, literal.annotations] = plan
+        elif is_true(plan.context):
+            taken.add(plan, literal)
 
 
-def _is_any(arguments: Sequence[nodes.Term]) -> bool:
-    """Return whether arguments match all others: they are different variables."""
-    free = {each.name for each in arguments if isinstance(each, nodes.Variable) and not each.negated}
-    return len(free) == len(arguments) and all(each.annotations is None for each in variables_in(arguments))
+class _Taken:
+    """The plans that are always selected, indexed by the arguments that their triggers fix.
+
+    A program may have thousands of plans for one event.
+    """
+
+    def __init__(self) -> None:
+        self._number = 0
+        # For each kind of event: the fixed arguments, and by their values the first such plan with its
+        # number.
+        self._plans: dict[object, dict[tuple[int, ...], dict[object, tuple[int, nodes.Plan]]]] = {}
+
+    def add(self, plan: nodes.Plan, literal: nodes.Literal) -> None:
+        """Add a plan, unless its trigger matches fewer events than its fixed arguments show."""
+        annotations = literal.annotations
+        if annotations is not None and not is_ground(annotations):
+            return
+        fixed: list[int] = []
+        met: set[str] = set()
+        for place, argument in enumerate(literal.arguments):
+            if isinstance(argument, nodes.Variable):
+                if argument.annotations is not None or argument.negated or argument.name in met:
+                    return
+                met.add(argument.name)
+            elif is_ground(argument):
+                fixed.append(place)
+            else:
+                return
+        self._number += 1
+        of_event = self._plans.setdefault(_event(plan.trigger, literal, annotations), {})
+        by_values = of_event.setdefault(tuple(fixed), {})
+        by_values.setdefault(_values(literal, fixed), (self._number, plan))
+
+    def covering(self, trigger: nodes.Trigger, literal: nodes.Literal) -> nodes.Plan | None:
+        """Return the first plan that handles every event that a trigger with this literal matches."""
+        found: list[tuple[int, nodes.Plan]] = []
+        for annotations in dict.fromkeys((None, literal.annotations)):
+            for fixed, plans in self._plans.get(_event(trigger, literal, annotations), {}).items():
+                plan = plans.get(_values(literal, fixed))
+                if plan is not None:
+                    found.append(plan)
+        return min(found, key=lambda each: each[0])[1] if found else None
+
+
+def _event(trigger: nodes.Trigger, literal: nodes.Literal, annotations: nodes.Annotations | None) -> object:
+    kind = (trigger.operator, trigger.kind, literal.functor, len(literal.arguments))
+    return (*kind, literal.negated, literal.namespace, annotations)
+
+
+def _values(literal: nodes.Literal, places: Sequence[int]) -> object:
+    return tuple([literal.arguments[place] for place in places])
 
 
 def _is_made(plan: nodes.Plan) -> bool:
@@ -258,6 +298,40 @@ def _where(before: nodes.Plan, plan: nodes.Plan) -> str:
         return ""
     file = "" if before.span.file is plan.span.file else f" of {before.span.file.name}"
     return f" at line {before.span.line}{file}"
+
+
+def contexts_never_true(found: ByKind) -> Iterator[Diagnostic]:
+    """Warn of plans whose context contradicts itself."""
+    for plan in found.of(nodes.Plan):
+        why = None if plan.context is None else contradiction(plan.context)
+        if plan.context is not None and why is not None:
+            span = plan.context.span or plan.trigger.span
+            yield problem("context-never-true", f"unreachable plan: {why}", span)
+
+
+def narrow_handlers(program: nodes.Program) -> Iterator[Diagnostic]:
+    """Note goals whose ``-!`` plans all have contexts: if none holds, the whole intention is dropped."""
+    handlers: dict[object, list[nodes.Plan]] = {}
+    for plan in program.plans:
+        trigger = plan.trigger
+        if trigger.operator != "-" or not trigger.kind:
+            continue
+        if isinstance(trigger.literal, nodes.Variable):
+            if is_true(plan.context):
+                return
+            continue
+        literal = trigger.literal
+        key = (trigger.kind, literal.namespace, literal.negated, literal.functor, len(literal.arguments))
+        handlers.setdefault(key, []).append(plan)
+    for plans in handlers.values():
+        if not any(is_true(plan.context) for plan in plans):
+            trigger = plans[-1].trigger
+            yield problem(
+                "narrow-handler",
+                "if no context of these failure plans holds, the whole intention is dropped",
+                trigger.span,
+                "add a failure plan without a context; the failure is not passed to the goals further out",
+            )
 
 
 def wrong_labels(found: ByKind) -> Iterator[Diagnostic]:
@@ -293,6 +367,7 @@ def _is_urgency(item: nodes.Literal) -> bool:
 # Check annotations of goals and labels that supervise: deadlines, attempts, periods and conditions.
 
 
+_Check = Callable[[tuple[nodes.Term, ...]], bool]
 _HELP: Final = {
     "within": "write a number of milliseconds, such as `within(5000)`",
     "hard_deadline": "write a number of milliseconds, such as `hard_deadline(5000)`",
@@ -305,33 +380,48 @@ _HELP: Final = {
 }
 
 
-_TAKES: Final = {
-    **dict.fromkeys(("within", "hard_deadline", "every"), ("time",)),
-    "retry": ("count", "delay"),
-    "while": ("formula",),
-    "cleanup": ("goal",),
-    "achieves": ("formula", "delay"),
-}
-"""The kinds of their arguments; all but the first one can be left out."""
-_LEAST: Final = {"time": 1e-9, "count": 1, "delay": 0}
-
-
-def _is_valid(item: nodes.Literal) -> bool:
-    kinds = _TAKES[item.functor]
-    return 1 <= len(item.arguments) <= len(kinds) and all(map(_fits, kinds, item.arguments))
-
-
-def _fits(kind: str, term: nodes.Term) -> bool:
-    """Return whether an argument may be of a kind; computed values are known only at run time."""
-    if kind == "goal":
-        return isinstance(term, nodes.Literal | nodes.Variable)
-    if kind == "formula":
-        return not isinstance(term, nodes.Number | nodes.String | nodes.ListTerm)
+def _number(term: nodes.Term, least: float) -> bool:
+    """Return whether a term may be a number, at least *least*; computed values are known only at run time."""
     if isinstance(term, nodes.Number):
-        return term.value >= _LEAST[kind] and (kind != "count" or float(term.value).is_integer())
+        return term.value >= least
     return isinstance(term, nodes.Variable | nodes.Arithmetic | nodes.FunctionCall)
 
 
+def _is_time(arguments: tuple[nodes.Term, ...]) -> bool:
+    """Return whether there is one positive number of milliseconds."""
+    return len(arguments) == 1 and _number(arguments[0], 1e-9)
+
+
+def _is_retry(arguments: tuple[nodes.Term, ...]) -> bool:
+    """Return whether there is a number of retries, and optionally a delay."""
+    if not 1 <= len(arguments) <= 2 or not _number(arguments[0], 1):
+        return False
+    count = arguments[0]
+    whole = not isinstance(count, nodes.Number) or float(count.value).is_integer()
+    return whole and (len(arguments) == 1 or _number(arguments[1], 0))
+
+
+def _is_goal(arguments: tuple[nodes.Term, ...]) -> bool:
+    return len(arguments) == 1 and isinstance(arguments[0], nodes.Literal | nodes.Variable)
+
+
+def _is_achieved(arguments: tuple[nodes.Term, ...]) -> bool:
+    """Return whether there is a condition, and optionally a time."""
+    value = nodes.Number | nodes.String | nodes.ListTerm
+    return (
+        1 <= len(arguments) <= 2
+        and not isinstance(arguments[0], value)
+        and all(_number(time, 0) for time in arguments[1:])
+    )
+
+
+_CHECKS: Final[dict[str, _Check]] = {
+    **dict.fromkeys(("within", "hard_deadline", "every"), _is_time),
+    "retry": _is_retry,
+    "while": lambda arguments: len(arguments) == 1,
+    "cleanup": _is_goal,
+    "achieves": _is_achieved,
+}
 _OF_GOALS: Final = ("within", "hard_deadline", "every", "retry", "achieves")
 _OF_LABELS: Final = ("within", "while", "cleanup", "achieves")
 _MISPLACED: Final = {
@@ -359,14 +449,22 @@ def _wrong_of(items: Sequence[nodes.Literal], valid: Sequence[str], where: str) 
     misplaced, help = _MISPLACED[where]
     for item in items:
         word = item.functor
-        if word in valid and not _is_valid(item):
+        if word in valid and not _CHECKS[word](item.arguments):
             yield problem("wrong-supervision", f"invalid `{word}`", item.span, _HELP[word])
+        elif word in valid and word in ("while", "achieves"):
+            yield from _never_true(item, where)
         elif word in misplaced and item.arguments:
             message = f"`{word}` has no effect on {where}"
             yield problem("wrong-supervision", message, item.span, help.format(_example(word)))
 
         elif where == "goals" and item.arguments:
             yield from _misspelt(item, "goal", valid)
+
+
+def _never_true(item: nodes.Literal, where: str) -> Iterator[Diagnostic]:
+    why = contradiction(item.arguments[0])
+    if why is not None:
+        yield problem("context-never-true", f"this {where[:-1]} always fails: {why}", item.span)
 
 
 def _example(word: str) -> str:

@@ -1,14 +1,22 @@
-"""Find the conditions in a program, variables that occur once, and comparisons that never hold."""
+"""Find the conditions in a program, and those that never hold.
+
+>>> from jacaros.agents.language.loader import parse_formula
+>>> contradiction(parse_formula("X < 3 & X > 5"))
+'X cannot be both above 5 and below 3'
+"""
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator
-from typing import Any, Final
+from collections.abc import Iterable, Iterator, Sequence
+from math import inf
+from typing import Any, Final, cast
 
 from jacaros.agents.language import nodes
 from jacaros.agents.language.cursor import MOST_ASKED
 from jacaros.agents.language.diagnostics import Diagnostic, problem
-from jacaros.agents.language.nodes import children, names_in, nodes_in, variables_in, walk
+from jacaros.agents.language.lowering import format_term
+from jacaros.agents.language.nodes import children, names_in, nodes_in, operands, variables_in, walk
+from jacaros.agents.terms.operators import BINARY
 from jacaros.runtime.files.texts import did_you_mean, suggestion
 
 Clause = nodes.Plan | nodes.Rule
@@ -81,6 +89,89 @@ def is_true(formula: nodes.Term | None) -> bool:
     return formula is None or (
         isinstance(formula, nodes.Literal) and formula.functor == "true" and not formula.arguments
     )
+
+
+def contradiction(formula: nodes.Term) -> str | None:
+    """Explain why *formula* never holds, or return None if that is not evident."""
+    parts = cast("list[nodes.Term]", operands(formula)) if isinstance(formula, nodes.And) else [formula]
+    return _constant(parts) or _both_ways(parts) or _two_values(parts) or _empty_range(parts)
+
+
+def _constant(parts: Sequence[nodes.Term]) -> str | None:
+    """``false``, ``not true`` or ``2 > 3``."""
+    for part in parts:
+        if isinstance(part, nodes.Literal) and part.functor == "false" and not part.arguments:
+            return "its condition is false"
+        if isinstance(part, nodes.Not) and is_true(part.operand):
+            return "`not true` never holds"
+        if (
+            isinstance(part, nodes.Relation)
+            and isinstance(part.left, nodes.Number)
+            and isinstance(part.right, nodes.Number)
+            and (holds := BINARY[part.operator].numbers) is not None
+            and not holds(part.left.value, part.right.value)
+        ):
+            return f"`{format_term(part)}` never holds"
+    return None
+
+
+def _both_ways(parts: Sequence[nodes.Term]) -> str | None:
+    """``p(X) & not p(X)``."""
+    plain = [part for part in parts if isinstance(part, nodes.Literal) and _is_fixed(part)]
+    for part in parts:
+        if isinstance(part, nodes.Not) and part.operand in plain:
+            text = format_term(part.operand)
+            return f"`{text}` and `not {text}` cannot both hold"
+    return None
+
+
+def _is_fixed(term: nodes.Term) -> bool:
+    """Return whether two occurrences of *term* mean the same."""
+    return not any(variable.unnamed for variable in variables_in(term))
+
+
+def _two_values(parts: Sequence[nodes.Term]) -> str | None:
+    """``X == 1 & X == 2``."""
+    values: dict[str, nodes.Term] = {}
+    for part in parts:
+        found = _variable_and_constant(part)
+        if found is None or found[1] not in ("=", "=="):
+            continue
+        name, _, value = found
+        if values.setdefault(name, value) != value:
+            return f"{name} cannot be both {format_term(values[name])} and {format_term(value)}"
+    return None
+
+
+def _empty_range(parts: Sequence[nodes.Term]) -> str | None:
+    """``X < 3 & X > 5``."""
+    below: dict[str, float] = {}
+    above: dict[str, float] = {}
+    for part in parts:
+        found = _variable_and_constant(part)
+        if found is None or not isinstance(found[2], nodes.Number):
+            continue
+        name, operator, number = found[0], found[1], found[2].value
+        if operator in ("<", "<="):
+            below[name] = min(below.get(name, inf), number)
+        elif operator in (">", ">="):
+            above[name] = max(above.get(name, -inf), number)
+    for name, most in below.items():
+        if above.get(name, -inf) > most:
+            return f"{name} cannot be both above {above[name]:g} and below {most:g}"
+    return None
+
+
+def _variable_and_constant(part: nodes.Term) -> tuple[str, str, nodes.Term] | None:
+    """Return the variable, the operator and the constant of ``X op constant``."""
+    if not isinstance(part, nodes.Relation) or not isinstance(part.left, nodes.Variable):
+        return None
+    left, right = part.left, part.right
+    plain = left.annotations is None and not left.unnamed
+    atom = isinstance(right, nodes.Literal) and not right.arguments and right.annotations is None
+    if not plain or not (atom or isinstance(right, nodes.Number | nodes.String)):
+        return None
+    return left.name, part.operator, right
 
 
 # Check for variables that occur once, and comparisons with variables that have no value.
@@ -172,13 +263,30 @@ def _meant_variable(name: str, occurrences: Counter[str]) -> str:
 
 
 def vain_comparisons(clause: Clause) -> Iterator[Diagnostic]:
-    """Warn of comparisons that never hold: ``X == 3`` with an unbound X, ``X = X + 1``."""
+    """Warn of comparisons that never hold (``X == 3`` with an unbound X, ``X = X + 1``) or ignore x (``x > 3``)."""
     met: set[str] = set()
     for node, asked in in_order(clause):
+        if isinstance(node, nodes.Relation) and BINARY[node.operator].orders:
+            yield from _ordered_atom(node)
         if isinstance(node, nodes.Variable):
             met.add(node.name)
         elif asked and isinstance(node, nodes.Relation) and isinstance(node.left, nodes.Variable):
             yield from _vain(node, node.left, met)
+
+
+def _ordered_atom(relation: nodes.Relation) -> Iterator[Diagnostic]:
+    for atom, other in ((relation.left, relation.right), (relation.right, relation.left)):
+        if (
+            isinstance(atom, nodes.Literal)
+            and not atom.arguments
+            and isinstance(other, nodes.Number | nodes.Arithmetic)
+        ):
+            yield problem(
+                "ordered-atom",
+                f"`{atom.functor}` is an atom, and an atom is greater than any number",
+                atom.span,
+                f"begin a variable with a capital letter: `{atom.functor[:1].upper()}{atom.functor[1:]}`",
+            )
 
 
 def _vain(relation: nodes.Relation, variable: nodes.Variable, met: set[str]) -> Iterator[Diagnostic]:

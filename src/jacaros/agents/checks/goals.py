@@ -110,18 +110,24 @@ def acting_conditions(found: ByKind, known: KnownActions) -> Iterator[Diagnostic
                     yield problem("acting-condition", message, part.span, "make it a step of the body")
 
 
+_PRINTING: Final = frozenset({".print", ".println", ".printf"})
 _SHORT: Final = 10
 """Milliseconds: a shorter `.wait` was probably meant in seconds."""
 
 
 def doubtful_values(found: ByKind) -> Iterator[Diagnostic]:
-    """Note waits that are probably meant in seconds."""
+    """Note waits that are probably meant in seconds, and atoms that are probably meant as texts."""
     for node in found.of(nodes.InternalAction):
         first = node.arguments[0] if node.arguments else None
         if node.name == ".wait" and isinstance(first, nodes.Number) and 0 < first.value < _SHORT:
             time = f"{first.value:g}"
             help = f"for {time} s write `.wait({first.value * 1000:g})`"
             yield problem("short-wait", f"`.wait({time})` waits for {time} ms", first.span, help)
+        for word in node.arguments if node.name in _PRINTING else ():
+            if isinstance(word, nodes.Literal) and word.functor.startswith("'") and not word.arguments:
+                text = word.functor.strip("'")
+                message = f"`{word.functor}` is an atom, which is printed with its quotes"
+                yield problem("quoted-atom", message, word.span, f'write a text as `"{text}"`')
 
 
 def unknown_performatives(found: ByKind, known: KnownActions) -> Iterator[Diagnostic]:

@@ -172,15 +172,15 @@ _CODES: Final[dict[Severity, str]] = {
     """,
     "warning": """
         acting-condition capital-constant changed-variable comparison-without-value
-        condition-as-step java-function misspelt-annotation
-        misspelt-belief no-effect organisation-library plan-never-selected
-        singleton-variable too-many unknown-artifact-type unknown-code unknown-goal
+        condition-as-step context-never-true event-never-happens java-function misspelt-annotation
+        misspelt-belief no-effect ordered-atom organisation-library plan-never-selected
+        plan-too-large singleton-variable too-many unknown-artifact-type unknown-code unknown-goal
         unknown-internal-action unknown-library unknown-message-type unknown-operation
         unknown-performative unknown-property unknown-resource wrong-arguments wrong-needs wrong-supervision
         wrong-urgency
     """,
     "note": """
-        not-imported short-wait
+        narrow-handler not-imported quoted-atom short-wait
     """,
 }
 """The codes of diagnostics, by their usual level: what the thesis prints and Jason rejects is only a warning in programs of

@@ -122,6 +122,8 @@ def test_plans_are_searched_or_run_although_nested_or_not_compiled():
     """)
     host.run()
     assert host.printed == ["stop", "5"]
+    levels = {level for level, told in host.logged if "is too large to compile" in told}
+    assert levels == {"warning"}
 
 
 LOOP = "!c(50). +!c(0) <- .print(done). +!c(N) <- +left(N); -left(N); !c(N - 1). +e <- .print(e).\n"

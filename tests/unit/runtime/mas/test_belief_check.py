@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from jacaros.agents.checks.beliefs import is_misspelt
+from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.runtime.mas.checks.files import check_files
 
 ARTIFACTS = """
@@ -40,8 +41,9 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def told(folder: Path, program: str, project: str = "", mappings: tuple[str, ...] = ()) -> list[str]:
-    """Return the misspelt names of a program, or of its project, with the suggested names."""
+def warnings(
+    folder: Path, program: str, project: str, mappings: tuple[str, ...], code: str
+) -> list[Diagnostic]:
     path = folder / "a.asl"
     path.write_text(program, encoding="utf-8")
     if project:
@@ -49,11 +51,21 @@ def told(folder: Path, program: str, project: str = "", mappings: tuple[str, ...
         path.write_text(project, encoding="utf-8")
     found = check_files([path], mappings).diagnostics
     assert not [each for each in found if each.severity == "error"]
+    return [each for each in found if each.code == code]
+
+
+def told(folder: Path, program: str, project: str = "", mappings: tuple[str, ...] = ()) -> list[str]:
+    """Return the misspelt names of a program, or of its project, with the suggested names."""
     return [
         f"{each.message.split()[1].strip('`')} {(each.help or '').split()[-1].replace('`', '')}"
-        for each in found
-        if each.code == "misspelt-belief"
+        for each in warnings(folder, program, project, mappings, "misspelt-belief")
     ]
+
+
+def never(folder: Path, program: str) -> list[str]:
+    """Return the warnings about events that never happen, with the help after a semicolon."""
+    found = warnings(folder, program, "", (), "event-never-happens")
+    return [f"{each.message.removeprefix('event ')}; {each.help}" for each in found]
 
 
 @pytest.mark.parametrize(
@@ -233,6 +245,120 @@ def test_which_names_are_misspelt(written: str, meant: str, misspelt: bool) -> N
     assert is_misspelt(written, meant) is misspelt
 
 
+RULE = "low :- battery(B) & B < 20. battery(15). "
+LOW = RULE + "+low <- .print(a). "
+BY_RULE = (
+    "low/0` never happens: `low/0` is the conclusion of a rule; "
+    "rules cause no events; react to a belief in the body of the rule: `+battery(B) : low`"
+)
+
+
+@pytest.mark.parametrize(
+    ("reacts", "sign"),
+    [
+        ("+low <- .print(low).", "+"),
+        ('+low <- .print("the battery is low").', "+"),
+        ("-low <- .print(a).", "-"),
+        ("+!go <- .wait({+low}); .print(a).", "+"),
+        ("+!go <- .wait(100). { +low <- .print(b). }", "+"),
+    ],
+)
+def test_conclusions_of_rules_make_no_events(folder: Path, reacts: str, sign: str) -> None:
+    assert never(folder, RULE + reacts) == ["`" + sign + BY_RULE]
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        "battery(1, 2).",
+        "battery(A, B) :- A < B.",
+        "+!more <- +battery(1, 2).",
+        "+!more(X) <- T =.. [battery, [X, X], []]; put(T).",
+        '+!more <- .send(bob, tellHow, "+!t <- .send(alice, tell, battery(1, 2)).").',
+        "+!more(T) <- makeArtifact(m, T, [], _).",
+    ],
+)
+def test_another_arity_that_may_be_added_is_not_reported(folder: Path, more: str) -> None:
+    expected = 1 if more.startswith("battery(A") else 0  # then it is the conclusion of a rule
+    found = never(folder, f"battery(15). +battery(A, B) <- .print(A, B). {more}")
+    assert len(found) == expected
+
+
+@pytest.mark.parametrize(
+    ("file", "text"),
+    [
+        ("b.asl", "!t. +!t <- .send(a, tell, low)."),
+        ("tool.py", "def tell(agent):\n    agent.believe('low')\n"),
+        ("robot.yaml", "topics: {low: {topic: /battery}}"),
+        ("run.py", 'agent.perceive("battery(5)")'),
+    ],
+)
+def test_an_event_that_another_file_mentions_may_happen(folder: Path, file: str, text: str) -> None:
+    (folder / file).write_text(text, encoding="utf-8")
+    program = "!go. +!go <- +battery(5). +battery(B)[source(percept)] <- .print(B)." if "run" in file else LOW
+    assert never(folder, program) == []
+
+
 @pytest.mark.parametrize("use", ["zones(b)", "zones(Z) & .print(Z)", "zones(a, b)", "zones([a])"])
 def test_another_form_of_a_word_is_a_name_of_its_own_elsewhere(folder: Path, use: str) -> None:
     assert told(folder, f"zone(a). !go. +!go : {use} <- .print(a).") == []
+
+
+@pytest.mark.parametrize(
+    ("program", "why"),
+    [
+        (
+            "battery(15). +battery(B, _) <- .print(B). +battery(B) <- .print(B).",
+            "`+battery/2` never happens: belief `battery/2` is never added; did you mean `battery/1`?",
+        ),
+        (
+            "!go. +!go <- -+battery(5). +battery(B)[source(percept)] <- .print(B).",
+            (
+                "`+battery/1` never happens: no artifact has `battery`, so its source is never `percept`; "
+                "the agent adds it itself: write `[source(self)]`, or omit the source"
+            ),
+        ),
+        (
+            MAKES + "+obstacle(D)[source(self)] <- .print(D).",
+            (
+                "`+obstacle/1` never happens: only artifacts have `obstacle`, so its source is never `self`; "
+                "write `[source(percept)]`, or omit the source"
+            ),
+        ),
+    ],
+    ids=["another arity", "a note is never a percept", "a property is never a note"],
+)
+def test_an_event_that_never_happens_is_explained(folder: Path, program: str, why: str) -> None:
+    assert never(folder, program) == [why]
+
+
+@pytest.mark.parametrize(
+    "program",
+    [
+        # A conclusion may also be a belief.
+        LOW + "low.",
+        LOW + "+!more <- +low.",
+        LOW + "+!more <- .send(self, tell, low).",
+        LOW + "+!more <- .send(bob, askOne, low, R); .print(R).",
+        LOW + "+!more(B) <- +B.",
+        LOW + "+!more <- .asserta(low).",
+        LOW + "+!more <- put(low).",
+        LOW + '+!more <- .term2string(T, "low"); put(T).',
+        LOW + "+!more(T) <- makeArtifact(m, T, [], _).",
+        LOW + '+!more <- makeArtifact(m, "Anything", ["low"], _).',
+        # Properties and signals of artifacts are events.
+        MAKES + "obstacle(1, 2). +obstacle(X) <- .print(X).",
+        MAKES + "near :- turned & obstacle(1). turned :- near. +turned <- .print(a).",
+        # Sources may match.
+        MAKES + "+obstacle(D)[source(percept)] <- .print(D).",
+        MAKES + "+!note <- +obstacle(1). +obstacle(D)[source(self)] <- .print(D).",
+        "!go. +!go <- +battery(5)[source(percept)]. +battery(B)[source(percept)] <- .print(B).",
+        "!go. +!go <- +battery(5). +battery(B)[source(self)] <- .print(B).",
+        "!go. +!go <- +battery(5). +battery(B)[source(X)] <- .print(B, X).",
+        "!go. +!go <- +battery(5); .send(a, tell, battery(6)). +battery(B)[source(percept)] <- .print(B).",
+        "+seen(B)[source(percept)] <- .print(B).",
+        "!go. +!go <- +battery(5); .add_annot(battery(6), source(percept), X). +battery(B)[source(percept)] <- .print(B).",
+    ],
+)
+def test_an_event_that_may_happen_is_not_reported(folder: Path, program: str) -> None:
+    assert never(folder, program) == []

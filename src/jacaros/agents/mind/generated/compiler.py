@@ -2,9 +2,11 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from itertools import islice
 from typing import Any, cast
 
 from jacaros.agents.language import nodes
+from jacaros.agents.language.nodes import walk
 from jacaros.agents.mind.actions.internal_action import InternalAction
 from jacaros.agents.mind.generated.matching import functor_of_literal
 from jacaros.agents.mind.generated.selection import (
@@ -352,11 +354,15 @@ class Compiler(Interpreter):
         return step
 
     def begin(self, agent: Circumstance) -> None:
-        """Compile the urgent part before an agent starts. Done for the first agent."""
+        """Compile the urgent part before an agent starts, and warn of plans that are too large. Done for the first
+        agent.
+        """
         if self._begun:
             return
         self._begun = True
         program = agent.library.program
+        for _, told in too_large(program.plans, self.actions):
+            agent.architecture.log("warning", f"{told}: it runs slower")
         urgencies = agent.selections.urgencies
         if urgencies is not None:
             for kind in filter(urgencies.__getitem__, program.kinds()):
@@ -393,3 +399,24 @@ class Compiler(Interpreter):
             Searches(predicate, self.actions, self._functions),
             Searches(predicate, self.actions, self._functions, deep=True),
         )
+
+
+_LARGE = 100
+"""Parts of a plan from which on it is looked at whether it can be compiled."""
+
+
+def too_large(plans: Sequence[Plan], actions: Mapping[str, InternalAction]) -> Iterator[tuple[Plan, str]]:
+    """Yield the plans that are too large to compile, each with a description."""
+    for plan in plans:
+        if sum(1 for _ in islice(walk(plan.node), _LARGE)) < _LARGE:
+            continue
+        head = plan.node.trigger
+        symbol = plan.trigger_functor()
+        kind = trigger_of_kind(head.operator, head.kind, symbol or functor("plan", 0))
+        try:
+            executed(write_select(kind, [plan], actions))
+        except TOO_LARGE as fault:
+            name = f"{head.operator}{head.kind}{'_' if symbol is None else repr(symbol)}"
+            span = plan.node.span
+            place = "" if span is None else f" ({span.file.name}:{span.line})"
+            yield plan, f"plan {name}{place} is too large to compile ({fault})"

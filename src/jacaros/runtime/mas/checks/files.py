@@ -259,6 +259,7 @@ class _Checked:
             whole = program  # the error has been reported in the project file
         own = [*diagnostics, *check(whole, known, errors)]
         if not errors:
+            own += _of_size(whole, code)
             self.programs.append((agent, whole))
         for source in sources:
             own += Suppressions(source).unknown
@@ -382,3 +383,15 @@ def _check_mapping(path: Path, findings: Findings) -> None:
 
 def _of_project(diagnostic: Diagnostic) -> Diagnostic:
     return diagnostic if diagnostic.code else replace(diagnostic, code="wrong-project")
+
+
+def _of_size(program: nodes.Program, code: PythonCode) -> Iterator[Diagnostic]:
+    """Return warnings about plans that run slower because they are too large for Python's compiler."""
+    from jacaros.agents.mind.generated.compiler import too_large
+    from jacaros.agents.mind.mind import new_engine  # here: only a complete program is compiled
+    from jacaros.agents.mind.state.plan_library import ProgramPlans
+
+    plans = ProgramPlans(program.plans, new_engine(code.actions)).plans
+    for plan, fault in too_large(plans, code.actions):
+        help = "write several plans, or rules for parts of it"
+        yield Diagnostic("warning", f"{fault}, so it runs slower", plan.node.span, help, "plan-too-large")
