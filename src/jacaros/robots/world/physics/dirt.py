@@ -134,10 +134,12 @@ class Cleaning:
                 self._tell(robot, "tool_started", {"tool": name})
 
     def step(self, dt: float, robots: dict[str, Robot]) -> None:
-        """Run the tools for *dt* seconds; a robot with an empty battery does not clean."""
+        """Run the tools for *dt* seconds; a robot with an empty battery, or one that hangs in the air, does not clean."""
         for name, work in self.at_work.items():
             robot = robots[name]
-            if not robot.battery.empty and work.step(dt, robot.x, robot.y, self._room_at(robot.x, robot.y)):
+            if robot.battery.empty or robot.wheels_drop:
+                continue
+            if work.step(dt, robot.x, robot.y, self._room_at(robot.x, robot.y)):
                 self._tell_removed(robot, work, at_the_end=False)
 
     def _tell_removed(self, robot: Robot, work: "ToolAtWork", at_the_end: bool) -> None:
