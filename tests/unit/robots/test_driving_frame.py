@@ -5,6 +5,7 @@ from robot_lab import STANDSTILL, Lab, apart, assert_at
 
 from jacaros.artifacts import Out, Structure
 from jacaros.robots.artifacts.velocity import ArtCmdVel
+from jacaros.robots.plane.pose import Pose
 
 ON_MAP = Structure("frame", ("map",))
 NOISE = "{noise_per_metre: 0.05, noise_degrees_per_turn: 5, noise_degrees_per_metre: 3}"
@@ -91,3 +92,20 @@ async def test_localisation_that_dies_on_the_way_stops_the_robot(lab: Lab) -> No
     await driving.done
     assert driving.reason == "no_transform(5)"
     assert lab.pose()[0] < 4.5
+
+
+async def test_a_relative_motion_fails_when_localisation_finds_the_robot_elsewhere(lab: Lab) -> None:
+    wheels = await lab.make(ArtCmdVel, ON_MAP)
+    turning = await lab.begun(2, wheels, "rotate", 180)
+    lab.world.robot("turtlebot").misled = Pose(-1, 0, 0)
+    await turning.done
+    assert turning.reason.startswith("interrupted(")
+    assert turning.message == "localisation has found the robot elsewhere"
+
+
+async def test_a_drive_to_a_point_continues_from_there(lab: Lab) -> None:
+    wheels = await lab.make(ArtCmdVel, ON_MAP)
+    driving = await lab.begun(2, wheels, "driveTo", 2, 0)
+    lab.world.robot("turtlebot").misled = Pose(0, 0, 0)
+    await driving.done
+    assert driving.ok

@@ -74,9 +74,11 @@ class Maneuver(Protocol):
 
     Attributes:
         needs_odometry: False for open-loop motions; their poses may be made up.
+        relative: whether the goal counts from where the motion began, not a point or heading of the frame.
     """
 
     needs_odometry: bool
+    relative: bool
 
     @property
     def activity(self) -> str:
@@ -109,7 +111,7 @@ class Straight:
     """Drive a signed length along *heading*, by default the robot's initial heading."""
 
     activity = "driving"
-    needs_odometry = True
+    needs_odometry = relative = True
 
     def __init__(self, length: float, heading: float | None = None) -> None:
         self._length = length
@@ -167,7 +169,7 @@ class Turn:
     """Turn on the spot by a signed angle; more than a full turn is possible."""
 
     activity = "turning"
-    needs_odometry = True
+    needs_odometry = relative = True
 
     def __init__(self, angle: float, tolerance: Tolerance = ANGLE) -> None:
         self._angle = angle
@@ -219,6 +221,7 @@ class Timed:
 
     period: ClassVar = 0.1
     needs_odometry = False
+    relative = True
 
     def __init__(self, velocity: Velocity, times: int) -> None:
         self._velocity = velocity
@@ -286,6 +289,8 @@ AIMING = Tolerance(math.radians(1.0), math.radians(2.0))
 class TurnTo(Turn):
     """Turn the short way round to an absolute heading; after a rest, from the robot's present heading."""
 
+    relative = False
+
     def __init__(self, heading: float) -> None:
         super().__init__(0.0)
         self._goal = heading
@@ -311,6 +316,7 @@ class DriveTo:
     """Turn towards a point and drive there; after a rest, from wherever the robot is."""
 
     needs_odometry = True
+    relative = False
 
     def __init__(self, x: float, y: float) -> None:
         self._goal = Pose(x, y, 0.0)
@@ -380,6 +386,7 @@ class Sequence:
     """Several maneuvers in turn; all have absolute goals, so they can be repeated after a rest."""
 
     needs_odometry = True
+    relative = False
 
     def __init__(self, *parts: Maneuver) -> None:
         self._parts = parts

@@ -21,6 +21,7 @@ from jacaros.robots.artifacts.drive_model import (
     Limits,
     Velocity,
 )
+from jacaros.robots.artifacts.lookout import RADIUS, Lookout
 from jacaros.robots.artifacts.maneuver import LEAST_PROGRESS, Maneuver, ProgressChecker, distance
 from jacaros.robots.artifacts.odometry import (
     LOCALISED,
@@ -318,6 +319,8 @@ class Motion:
         self._frame = ""
         self._fresh = 0
         self._left_at: Pose | None = None
+        self._leaps = 0
+        self._held_up = False
         self._watched = False
         self._progress = ProgressChecker()
         self._sought = (0.0, 0.0)
@@ -347,6 +350,7 @@ class Motion:
         ended = False
         while not ended:
             await self._get_ready()
+            self._leaps = self._wheels.odometer.leaps
             if self._begun:
                 self._maneuver.go_on(self._pose())
             else:
@@ -370,12 +374,21 @@ class Motion:
         self._due = self._wheels.clock.elapsed
         while not self.driving.paused:
             self._heed_gap()
-            seen = blind or self._has_odometry()
+            seen = self._looks(braking) and (blind or self._has_odometry())
             pause = next(pauses, None)
             if pause is None and seen and self._rests(braking):
                 return True
             await self._command(TimedCommand(STANDSTILL, PERIOD if pause is None else pause), pause is None)
             braking += PERIOD if pause is None else pause
+        return False
+
+    def _looks(self, waited: float) -> bool:
+        """Return whether the laser shows the way, if the motion stops for obstacles. Fail if no scan comes."""
+        lookout, limit = self._wheels.lookout, self._wheels.settings.odometry_timeout
+        if lookout is None or lookout.sees:
+            return True
+        if waited >= limit:
+            self._fail(f"no laser scan for {limit:g} s", "no_scan", limit)
         return False
 
     def _rests(self, braking: float) -> bool:
@@ -402,11 +415,24 @@ class Motion:
             if not blind and not self._has_odometry():
                 await self._command(TimedCommand(STANDSTILL))
                 continue
+            self._heed_leap()
             step = maneuver.command(self._outlook())
             self._check(step)
             if step is None:
                 return True
-            await self._command(step)
+            await self._command(self._with_room(step))
+
+    def _with_room(self, step: TimedCommand) -> TimedCommand:
+        """Slow down before what the laser sees; an open-loop motion fails if it would lose more than half its speed."""
+        lookout = self._wheels.lookout
+        if lookout is None:
+            return step
+        velocity = lookout.limit(step.velocity)
+        self._held_up = velocity is not step.velocity
+        too_slow = 2.0 * abs(velocity.linear) < abs(step.velocity.linear)
+        if too_slow and not self._maneuver.needs_odometry:
+            self._stuck()
+        return TimedCommand(velocity) if self._held_up else step
 
     def _outlook(self) -> Outlook:
         wheels, now = self._wheels, self._wheels.clock.elapsed
@@ -501,6 +527,11 @@ class Motion:
         if left_at is not None and distance(left_at, self._pose()) > LEAP:
             self._fail("odometry was reset", "interrupted", self._maneuver.covered)
 
+    def _heed_leap(self) -> None:
+        """Fail if localisation has found the robot elsewhere: what a relative motion has covered is unknown."""
+        if self._maneuver.relative and self._wheels.odometer.leaps != self._leaps:
+            self._fail("localisation has found the robot elsewhere", "interrupted", self._maneuver.covered)
+
     def _stay_in(self, frame: str) -> None:
         """Fail if poses arrive in another frame than at the beginning: the goal is a point in the first one."""
         self._frame = self._frame or frame
@@ -532,6 +563,8 @@ class Motion:
     def _stuck(self) -> NoReturn:
         """Fail: the robot does not follow commands. It is blocked if it has followed them before."""
         model, driving = self._wheels.model, self._maneuver.activity == "driving"
+        if self._held_up:
+            self._fail("the laser sees something in the way", "blocked", self._maneuver.covered)
         if model.has_rolled(driving):
             self._fail(f"the robot is stuck ({model})", "blocked", self._maneuver.covered)
         if not self._wheels.matching.exists():
@@ -564,6 +597,10 @@ class WheeledArtifact(RosArtifact):
         unmatched(W): effect of a base that has not subscribed by then: ``warn`` (default; the motion begins) or
             ``fail``, with ``unmatched(Topic)``.
         odometry_frame(F): the only frame in which odometry is accepted; default: that of the first message.
+        stop_for(T): the topic of a laser, such as ``scan``: motions slow down before what it sees in the way, stand in
+            front of it, and fail with ``blocked(Covered)`` if it stays, before they touch it; without scans they do not
+            begin, and fail with ``no_scan(Seconds)``.
+        radius(R): metres from that laser to the edge of the robot (0.18).
         frame(F): the frame of all poses, such as ``map``: motions use odometry corrected by localisation on tf, so
             that errors of slipping wheels do not add up; default: odometry's own frame.
 
@@ -584,6 +621,7 @@ class WheeledArtifact(RosArtifact):
         matching: lets motions wait until the robot's base receives commands.
         odometer: the newest odometry.
         settings: speeds and time-outs.
+        lookout: what the laser sees in the way; None without the option ``stop_for``.
         newest_pose: x, y and heading in degrees, for operations that return them.
     """
 
@@ -600,6 +638,8 @@ class WheeledArtifact(RosArtifact):
         "odometry_topic": text,
         "odometry_frame": text,
         "frame": text,
+        "stop_for": text,
+        "radius": positive,
         **MATCH_OPTIONS,
     }
     robot_in_properties = True
@@ -627,6 +667,7 @@ class WheeledArtifact(RosArtifact):
         self.at_dispose(lambda: self.motions.models.remove(self.model))
         topic, frame = self.option("odometry_topic", "odom"), self.option("odometry_frame", "")
         self.odometer = Odometer(self, topic, self.on_odometry, frame, self._placed())
+        self.lookout = self._lookout()
         if "frame" not in self.options:
             drift = Drift(self.ros, self.odometer, lambda: bool(self._motions), self.log)
             localised = self.robot_topic("amcl_pose")
@@ -643,6 +684,12 @@ class WheeledArtifact(RosArtifact):
             return driving_frame(self.ros, name)
         except CapabilityMissing as error:
             self.fail(f"frame({name}): {error}", "ros_error", name)
+
+    def _lookout(self) -> Lookout | None:
+        if "stop_for" not in self.options:
+            return None
+        topic, radius = str(self.options["stop_for"]), self.option("radius", RADIUS)
+        return Lookout(self, topic, radius, self.settings.limits)
 
     def on_odometry(self, odometry: Odometry) -> None:
         """Handle every odometry message."""

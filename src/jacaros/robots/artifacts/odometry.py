@@ -11,7 +11,7 @@ from jacaros.robots.artifacts.drive_model import Velocity
 from jacaros.robots.kit.options import text
 from jacaros.robots.kit.reading import READING_OPTIONS, Reading, Stamps
 from jacaros.robots.kit.ros_artifact import RosArtifact
-from jacaros.robots.plane.pose import Pose, normalised
+from jacaros.robots.plane.pose import ORIGIN, Pose, normalised
 from jacaros.robots.ros.backend import Backend
 from jacaros.robots.ros.errors import TransformUnavailable
 from jacaros.robots.ros.message import to_seconds
@@ -74,6 +74,7 @@ class Odometer:
             unknown.
         lacking: the failure reason for missing odometry: ``no_odometry``, or ``no_transform`` if messages arrive and
             only the frame is unknown.
+        leaps: how often the driving frame has leapt, as when localisation finds the robot elsewhere.
     """
 
     def __init__(
@@ -87,6 +88,7 @@ class Odometer:
         self.newest: Odometry | None = None
         self.count = 0
         self.trusted, self.lacking = True, NO_ODOMETRY
+        self.leaps, self._correction = 0, ORIGIN
         self.faults = artifact.faults_of(topic)
         self.header = Stamps(self.faults, artifact.clock, frame)
         self._on_reading, self._placed = on_reading, placed
@@ -116,10 +118,18 @@ class Odometer:
         if odometry is None:
             self.trusted, self.lacking = False, NO_TRANSFORM
             return
+        if odometry is not read:
+            self._watch_frame(odometry.pose.then(pose.inverse()), pose)
         self.newest = odometry
         self.trusted, self.lacking = True, NO_ODOMETRY
         self.count += 1
         self._on_reading(odometry)
+
+    def _watch_frame(self, correction: Pose, at: Pose) -> None:
+        """Count a leap of the driving frame."""
+        if self.newest is not None and _exceeds(_apart(self._correction, correction, at), LEAP):
+            self.leaps += 1
+        self._correction = correction
 
     def lack(self) -> str:
         """Return why there is no odometry, for messages."""
@@ -268,14 +278,10 @@ class Drift:
         if at is None or self._ros in _advised:
             return
         correction = Pose.of(sample.message.pose.pose).then(at.inverse())
-        if (
-            self._first is None
-            or self._last is None
-            or _exceeds(self._apart(self._last, correction, at), LEAP)
-        ):
+        if self._first is None or self._last is None or _exceeds(_apart(self._last, correction, at), LEAP):
             self._first = correction
         self._last = correction
-        metres, angle = self._apart(self._first, correction, at)
+        metres, angle = _apart(self._first, correction, at)
         if _exceeds((metres, angle), TOLERANCE) and self._driving():
             _advised.add(self._ros)
             self._log(
@@ -300,11 +306,11 @@ class Drift:
             newest.pose.yaw - late * newest.velocity.angular,
         )
 
-    @staticmethod
-    def _apart(one: Pose, other: Pose, at: Pose) -> tuple[float, float]:
-        """Return how far two corrections put the robot apart: metres and radians."""
-        a, b = one.then(at), other.then(at)
-        return math.dist(a[:2], b[:2]), abs(normalised(a.yaw - b.yaw))
+
+def _apart(one: Pose, other: Pose, at: Pose) -> tuple[float, float]:
+    """Return how far two corrections put the robot apart: metres and radians."""
+    a, b = one.then(at), other.then(at)
+    return math.dist(a[:2], b[:2]), abs(normalised(a.yaw - b.yaw))
 
 
 def _exceeds(apart: tuple[float, float], limits: tuple[float, float]) -> bool:
