@@ -89,6 +89,8 @@ PASSING = 0.05
 """Distance in metres that the robot keeps from robots that it passes."""
 _PASSING_SPEED = 0.2
 _SLOWEST = 0.04
+_APPROACH_TIME = 0.7
+"""Seconds that the robot is always away from the end of its path: late commands need some."""
 _LOOK_AHEAD = 0.2
 _LOOK_AHEAD_TIME = 0.4
 _PREDICTED = 0.5
@@ -183,7 +185,9 @@ class Driver:
         return rate if left >= 0.0 else -rate
 
     def _for_end(self, route: Route) -> float:
-        return max(_SLOWEST, math.sqrt(2.0 * self.pace.braking * max(0.0, route.remaining)) - 0.05)
+        """Return a speed at which the robot can still stop at the end, though its commands may be late."""
+        left = max(0.0, route.remaining)
+        return max(_SLOWEST, min(math.sqrt(2.0 * self.pace.braking * left) - 0.05, left / _APPROACH_TIME))
 
     def _for_others(self, pose: Placement, others: Sequence[Circle]) -> float:
         """Return a speed that falls with the distance of robots ahead, to 0 at `KEEP_OFF` unless there is room to pass."""

@@ -17,7 +17,7 @@ from jacaros.robots.world.navigation.planner import (
     coordinates,
 )
 
-TOLERANCE = 0.05
+TOLERANCE = 0.04
 """Distance from the goal in metres at which the robot has arrived."""
 YAW_TOLERANCE = 0.05
 """The same for the heading, in radians."""
