@@ -8,7 +8,7 @@
 
 // A plan: to achieve the goal `start`, run these steps in order.
 +!start
-  <- !use_artifact("wheels", "ArtCmdVel", [frame(map)]);  // an artifact is something that the agent uses
+  <- !use_artifact("wheels", "ArtCmdVel", [frame(map), stop_for(scan)]);  // an artifact is something that the agent uses
      // move(25) drives ahead for 2.6 seconds, with 26 commands at 10 Hz; rotate turns to the left, by degrees, and
      // ends when odometry has measured them.
      for (.member(Leg, [out, back])) { .print("driving ", Leg); move(25); rotate(180) };
@@ -20,8 +20,8 @@
      X * X + Y * Y < 0.05 * 0.05;  // a condition is a step, too: if it does not hold, the goal fails
      .stopMAS.                     // stop the whole system
 
-// The wheels drop: the robot is lifted, so nothing is left of what it has measured.
-+hazard(wheel_drop, _) <- .fail_goal(start).
+// The robot is lifted or touches something: what it has measured is worth nothing.
++hazard(Kind, _) : Kind == wheel_drop | Kind == bump <- .fail_goal(start).
 
 // The goal has failed: the exit status says so.
 -!start <- .print("I am not where I started, I need help"); .stopMAS(0, 1).

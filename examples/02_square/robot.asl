@@ -7,7 +7,7 @@
 +!start
   <- // Drives by odometry: an operation ends when the robot has gone the whole way.  Odometry drifts, because
      // wheels slip; with frame(map), localisation corrects it.
-     !use_artifact("wheels", "ArtCmdVelMuxAndOdometry", [frame(map)]);
+     !use_artifact("wheels", "ArtCmdVelMuxAndOdometry", [frame(map), stop_for(scan)]);
      for (.range(Side, 1, 4)) {
         moveForward(1);  // metres
         rotate(90);      // degrees
@@ -17,7 +17,7 @@
      };
      .stopMAS.
 
-// The robot is lifted.
-+hazard(wheel_drop, _) <- .fail_goal(start).
+// The robot is lifted, or touches something.
++hazard(Kind, _) : Kind == wheel_drop | Kind == bump <- .fail_goal(start).
 
 -!start <- .print("I am not back at the start, I need help"); .stopMAS(0, 1).

@@ -10,7 +10,8 @@ place(2, 2, 2, 90).
 place(3, 0, 2, 180).
 place(4, 0, 0, 270).  // where the robot starts
 place(dock, 1, 1, 0).
-shift(10).  // number of recharges in a shift
+visits_within(0.1).  // metres from a corner
+shift(10).           // number of recharges in a shift
 
 next(1).    // the corner that the robot is heading for
 visits(0).  // number of corners reached
@@ -20,7 +21,7 @@ lowest(100).  // lowest battery level on arrival in the dock, in percent
 !start.
 
 +!start
-  <- !use_artifact("wheels", "ArtCmdVelMuxAndOdometry", [frame(map)]);
+  <- !use_artifact("wheels", "ArtCmdVelMuxAndOdometry", [frame(map), stop_for(scan)]);
      !use_artifact("battery", "ArtSimBattery", [source(robot)]);
      !!patrol([1, 2, 3, 4]).  // !! : a separate goal, which runs independently of this one
 

@@ -23,7 +23,7 @@ recharges(0).
 !start.
 
 +!start
-  <- !use_artifact("wheels", "ArtCmdVelMuxAndOdometry", [frame(map)]);
+  <- !use_artifact("wheels", "ArtCmdVelMuxAndOdometry", [frame(map), stop_for(scan)]);
      !use_artifact("battery", "ArtSimBattery", [source(robot)]);
      !use_artifact("household", "ArtCleaning");
      !!clean_house.

@@ -55,6 +55,16 @@
      !assert_printed("I need help");
      !assert_did(.stopMAS(0, 1)).
 
+@does_not_go_on_when_it_has_touched_something[test]
++!test_touched
+  <- !fakes(0.02);
+     !!start;
+     .wait(500);
+     ++hazard(bump, "bump_front_left");
+     .wait(100);
+     !assert_printed("I need help");
+     !assert_did(.stopMAS(0, 1)).
+
 @does_not_turn_when_it_cannot_drive[test]
 +!test_stuck
   <- !fakes(0.02);

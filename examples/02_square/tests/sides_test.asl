@@ -43,3 +43,13 @@
      .wait(100);
      !assert_printed("I need help");
      !assert_did(.stopMAS(0, 1)).
+
+@does_not_go_on_when_it_has_touched_something[test]
++!test_touched
+  <- !fakes(0);
+     !!start;
+     .wait(500);
+     ++hazard(bump, "bump_front_left");
+     .wait(100);
+     !assert_printed("I need help");
+     !assert_did(.stopMAS(0, 1)).

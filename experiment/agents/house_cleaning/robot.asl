@@ -9,6 +9,7 @@ place(3, 0, 2, 0).
 place(dock, 1, 1, 0).
 charged_at(100).  // percent
 attempts(20).
+arrives_within(0.05).  // metres
 rounds(4).
 
 !start.

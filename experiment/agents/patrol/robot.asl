@@ -7,7 +7,8 @@ place(4, 0, 0, 270).
 place(dock, 1, 1, 0).
 charged_at(100).  // percent
 attempts(20).
-shift(10).  // it ends after so many recharges
+visits_within(0.1).  // metres
+shift(10).           // it ends after so many recharges
 recharges(0).
 
 !keep_charged.

@@ -67,3 +67,18 @@ place(kitchen, 2, 3, 90).
      !assert_true(lifted);
      .wait(3100);
      !assert_false(lifted).
+
+@a_robot_that_is_lifted_at_a_place_has_visited_it[test]
++!test_lifted_there
+  <- +visits_within(0.1);
+     +pose(2.05, 3, 90);
+     !fake_action(navigate_to(_, _, _), after(5000));
+     !!patrol([kitchen], 1);
+     .wait(500);
+     -+pose(2.04, 3, 90);
+     .wait(200);
+     !assert_false(done);
+     ++hazard(wheel_drop, "wheel_drop_left");
+     .wait(done, 8000);
+     .wait(3000);
+     !assert_did(navigate_to(_, _, _), 1).

@@ -89,3 +89,48 @@ place(c, 3, 0, 0).
 +!test_empty
   <- !patrol([]);
      !assert_not_did(navigate_to(_, _, _)).
+
+@goes_again_to_a_place_that_it_has_missed[test]
++!test_missed
+  <- +arrives_within(0.05);
+     +pose(1.1, 0, 0);
+     !fake_action(navigate_to(_, _, _), after(1000));
+     !!patrol([a], 1);
+     .wait(2500);
+     !assert_false(been(a));
+     -+pose(1.04, 0, 0);
+     .wait(been(a), 5000);
+     !assert_did(navigate_to(1, 0, 0), 2).
+
+@says_that_it_stands_beside_a_place[test]
++!test_beside
+  <- +arrives_within(0.05);
+     +pose(1.1, 0, 0);
+     !fakes;
+     !patrol([a], 1);
+     !assert_true(unreachable(a, not_there));
+     !assert_false(been(a));
+     !assert_did(navigate_to(1, 0, 0), 3).
+
+// The drive to the dock begins where the place has been visited.
+@visits_a_place_that_it_has_nearly_reached_before_it_charges[test]
++!test_nearly
+  <- +visits_within(0.1);
+     +place(dock, 9, 9, 0);
+     !fakes;
+     !fake_action(navigate_to(_, _, _), after(2000));
+     !fake_action(dock, after(1000));
+     !fake_action(undock);
+     +pose(0, 0, 0);
+     !!patrol([a, b], 1);
+     .wait(500);
+     -+pose(0.85, 0, 0);
+     +battery(100);
+     !!charge_first;
+     .wait(500);
+     !assert_not_did(navigate_to(9, 9, 0));
+     -+pose(0.95, 0, 0);
+     .wait(been(a), 500);
+     .wait(been(b), 20000);
+     !assert_did(dock, 1);
+     !assert_did(navigate_to(1, 0, 0), 1).

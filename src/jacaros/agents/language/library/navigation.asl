@@ -7,6 +7,8 @@
 //
 //     place(kitchen, 2, 2, 90).   // x and y in metres, yaw in degrees
 //     attempts(5).                // attempts to reach a place (3)
+//     arrives_within(0.03).       // metres from a place at which a patrol has reached it (where a drive ends)
+//     visits_within(0.1).         // metres at which it counts as visited if something calls the robot away (never)
 //     low_at(30).                 // percent at which the battery is low (20)
 //     charged_at(100).            // percent at which it is charged (95)
 //     dock_id("dock_1").          // Nav2's name for the robot's dock, if Nav2 does the docking
@@ -22,6 +24,11 @@ percent_left(Percent) :- reported_charge(Percent) & Percent <= 150.
 percent_left(Percent) :- reported_charge(Charge) & Charge > 150 & Percent = Charge / 100.  // the driver counts in percent
 reported_charge(Percent) :- battery(Percent, _).
 reported_charge(Percent) :- battery(Percent).
+
+// Metres from a place, by pose(X, Y, Yaw) of the mappings of Nav2 and move_base, or the program's own.
+from(Place, Metres) :- place(Place, X, Y, _) & pose(NowX, NowY, _) & Metres = math.sqrt((X - NowX) ** 2 + (Y - NowY) ** 2).
+
+beside(Place) :- arrives_within(Metres) & from(Place, Far) & Far > Metres.
 
 battery_low :- percent_left(Percent) & low_at(Least) & Percent <= Least.
 battery_low :- percent_left(Percent) & not low_at(_) & Percent <= 20.
@@ -160,8 +167,39 @@ patience(300000) :- not slowest_percent(_).
      }.
 
 +!reach(Place, true)
-  <- !go_to(Place);
+  <- !arrive_at(Place, 1);
+     .abolish(visited(_));
      .abolish(unreachable(Place, _)).
+
+// Late wheels roll on, and the estimate of the pose may still change: go there again.
++!arrive_at(Place, Number)
+  <- !go_to(Place);
+     .wait(not beside(Place), 1000, _);
+     !found_at(Place, Number).
+
++!found_at(Place, Number) : beside(Place) & attempts_allowed(Most) & Number < Most
+  <- !arrive_at(Place, Number + 1).
+
++!found_at(Place, _) : beside(Place)
+  <- .fail(error(action_failed), error_msg("the robot stands beside the place"), env_failure_reason(not_there)).
+
++!found_at(_, _).
+
+// What calls the robot away just before a place waits until it has been there; the visit then ends without the rest of the drive.
+nearly_there :- visits_within(Metres) & .desire(reach(Place, _)) & from(Place, Far) & Far > 0.7 * Metres & Far <= 2 * Metres.
+
++pose(_, _, _) : visits_within(Metres) & not lost & .desire(reach(Place, _)) & from(Place, Far) & Far <= Metres
+  <- -+visited(Place).
+
++visited(_) : .intend(charge_now) | lifted
+  <- !end_visit.
+
++!end_visit : visited(Place)
+  <- .abolish(visited(_));
+     .succeed_goal(visit(Place));
+     !arrived(Place).
+
++!end_visit.
 
 // An unknown place is an error in the patrol goal.
 -!reach(_, _)[error(Error), error_msg(Text), env_failure_reason(unknown_place(Place))]
@@ -219,9 +257,14 @@ patience(300000) :- not slowest_percent(_).
      !charge_first;
      !keep_charged.
 
-@navigation__charge[urgency(10), needs(wheels)]
 +!charge_first
-  <- !dock_and_charge.
+  <- .wait(not nearly_there, 5000, _);
+     !charge_now.
+
+@navigation__charge[urgency(10), needs(wheels)]
++!charge_now
+  <- !end_visit;
+     !dock_and_charge.
 
 // A robot that cannot charge stands still, so that its battery lasts until a person comes.
 -!charge_first[error(Error), error_msg(Text), env_failure_reason(Reason)]
@@ -337,7 +380,8 @@ patience(300000) :- not slowest_percent(_).
 // The robot stops what it does, searches, and continues.  More urgent than all that drives: other plans that need the wheels wait.
 @navigation__lost[urgency(20), needs(wheels)]
 +lost
-  <- !find_place;
+  <- .abolish(visited(_));
+     !find_place;
      !return_to_work.
 
 // A person has shown the robot its place, after it had given up.
@@ -403,6 +447,7 @@ patience(300000) :- not slowest_percent(_).
 +lifted
   <- .wait(lost, 3000, _);
      -lifted;
+     !end_visit;
      !work_here.
 
 // The search returns to work.
