@@ -149,11 +149,7 @@ class Ros2Goals:
 
     @property
     def _handlers(self) -> dict[str, OperationHandler]:
-        return {
-            "action_feedback": self._take_feedback,
-            "action_result": self._take_result,
-            "status": self._take_refusal,
-        }
+        return {"action_feedback": self._take_feedback, "action_result": self._take_result}
 
     def _take_feedback(self, message: dict[str, Any]) -> None:
         goal_id, values = message["id"], message.get("values")
@@ -180,18 +176,12 @@ class Ros2Goals:
         else:
             self._sender.fail(goal_id, CallFailed(f"action {self._sender.name}: the result cannot be read"))
 
-    def _take_refusal(self, message: dict[str, Any]) -> None:
-        """Handle a refusal by the bridge itself, which is too old to support actions."""
-        text = str(message.get("msg"))
-        if "nknown operation" in text:
-            self._refused(message["id"], text)
-
     def _refused(self, goal_id: str, text: str) -> None:
         if "No action server" in text:
             self._sender.fail(goal_id, ServerUnavailable(f"no server offers action {self._sender.name}"))
         elif "rejected" in text:
             self._sender.rejected(goal_id)
-        elif "nknown operation" in text or text == UNTOLD:
+        elif text == UNTOLD:
             problem = f"action {self._sender.name}: {text}; does this rosbridge server support actions? Version 2 does"
             self._sender.fail(goal_id, CallFailed(problem))
         else:

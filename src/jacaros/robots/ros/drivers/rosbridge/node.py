@@ -50,7 +50,6 @@ _FIELDS = {
     "action_result": "id",
     "send_action_goal": "action",
     "cancel_action_goal": "action",
-    "status": "id",
 }
 """The field that names the addressee of each operation of the server, apart from ``publish``."""
 
@@ -64,7 +63,6 @@ class BridgeNode(Backend):
 
     Attributes:
         attached: whether there is a connection and the version of ROS is known.
-        packs: whether the server can send CBOR.
         handlers: what handles operations of the server, by the operation and the value of its field in `_FIELDS`.
     """
 
@@ -79,7 +77,6 @@ class BridgeNode(Backend):
         self.multiplexers: dict[str, TopicMultiplexer[Any]] = {}
         self.handlers: dict[tuple[str, str], OperationHandler] = {}
         self.attached = False
-        self.packs = False
         self._numbers = itertools.count(1)
         self._tasks: set[asyncio.Task[None]] = set()
         self._lost_topics: set[str] = set()
@@ -208,21 +205,20 @@ class BridgeNode(Backend):
                 f"the rosbridge server at {self.url} has no rosapi node, so the graph cannot be queried; assuming ROS 2; "
                 "its launch file starts both"
             )
-        self.translator.ros_version, self.packs = found or (2, False)
+        self.translator.ros_version = found or 2
         self.attached = True
         self._for_all("join")
         self.found()
 
-    async def _ask_for_version(self) -> tuple[int, bool] | None:
-        """Return the version of ROS, and whether the server can send CBOR; None if rosapi does not answer."""
+    async def _ask_for_version(self) -> int | None:
+        """Return the version of ROS; None if rosapi does not answer."""
         for _ in range(ATTEMPTS):
             # Neither ROS 1 nor early ROS 2 has this service.
             with contextlib.suppress(ServiceError, KeyError, TypeError, ValueError):
-                return int((await self._rosapi("get_ros_version", {}, PATIENCE))["version"]), True
+                return int((await self._rosapi("get_ros_version", {}, PATIENCE))["version"])
             with contextlib.suppress(ServiceError, KeyError, TypeError):
                 types = (await self._rosapi("topics", {}, PATIENCE))["types"]
-                # Early servers of ROS 2 lost messages in CBOR.
-                return (2, False) if any(SIGN_OF_2 in kind for kind in types) else (1, True)
+                return 2 if any(SIGN_OF_2 in kind for kind in types) else 1
             await self.clock.sleep(PAUSE)
         return None
 
@@ -260,8 +256,6 @@ class BridgeNode(Backend):
             self.loop.call_soon(self._dispatch, message["op"], message)
 
     def _dispatch(self, operation: str, message: dict[str, Any]) -> None:
-        if operation == "status" and message.get("level") not in ("error", "warning"):
-            return
         whose = str(message.get(_FIELDS.get(operation, "")))
         handler = self.handlers.get((operation, whose))
         try:
@@ -269,15 +263,14 @@ class BridgeNode(Backend):
                 handler(message)
             elif operation == "service_response":
                 self.requests.answered(message)
-            elif operation == "status":
-                self._note_status(whose, str(message.get("msg")))
+            elif operation == "status" and message.get("level") in ("error", "warning"):
+                self._note_status(str(message.get("msg")))
         except (TypeError, ValueError, KeyError, AttributeError) as problem:
             self.log(f"the rosbridge server sent an invalid {operation}: {problem}")
 
-    def _note_status(self, number: str, text: str) -> None:
-        """Handle a status message of the server, mostly that it refuses a request."""
-        # A failed call is answered as well.
-        if not number.startswith(("call_service:", "send_action_goal:")) and text not in self._reported:
+    def _note_status(self, text: str) -> None:
+        """Log a status message once; rosbridge_suite keeps them for its own log, but not every server does."""
+        if text not in self._reported:
             self._reported.add(text)
             self.log(f"message of the rosbridge server: {text}")
 

@@ -88,7 +88,6 @@ class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
         super().__init__(topic, type_name)
         self._number = node.number("subscribe", topic)
         self._node = node
-        node.handlers["status", self._number] = self._refused
         self._last: Any = None
         self._late: Timer | None = None
         self._depth = 0
@@ -121,7 +120,7 @@ class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
             "type": self._node.written_type(self.type_name),
             "queue_length": self._depth,
         }
-        if self._node.packs and self._node.translator.packs(self.type_name):
+        if self._node.translator.packs(self.type_name):
             operation["compression"] = "cbor"
         # Without qos the server chooses one that matches all publishers that it knows. But if none exist yet, it
         # misses what they publish before they discover it.
@@ -153,16 +152,12 @@ class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
         self._last = message
         super().put(message)
 
-    def _refused(self, message: dict[str, Any]) -> None:
-        self.report(f"topic {self.topic}: refused by the rosbridge server: {message.get('msg')}")
-
     def _stop_looking(self) -> None:
         if self._late is not None:
             self._late.cancel()
 
     def _leave(self) -> None:
         self._stop_looking()
-        self._node.handlers.pop(("status", self._number), None)
         self._node.admission.forget(self._number)
         self._node.send({"op": "unsubscribe", "id": self._number, "topic": self.topic})
 
