@@ -1,7 +1,6 @@
 """When a guard stops the robot, and when it lets go of it; and the whole of it on the graph inside the process."""
 
 import asyncio
-import json
 import math
 from collections.abc import Awaitable, Callable
 from pathlib import Path
@@ -13,7 +12,7 @@ import pytest
 from jacaros.robots.ros.backend import Backend
 from jacaros.robots.ros.guard import LEAVING, Brakes, Guard, HeartbeatMonitor
 from jacaros.robots.ros.guarded import STAMPED, Guarded
-from jacaros.robots.ros.heartbeat import LOCAL, Heartbeat, line
+from jacaros.robots.ros.heartbeat import LOCAL, Heartbeat
 from jacaros.robots.ros.open import GraphAddress, open_backend
 from jacaros.runtime.clock import VirtualClock, WallClock, run
 from jacaros.runtime.errors import UsageError
@@ -239,10 +238,3 @@ def test_a_stamped_velocity_carries_the_time_unless_it_is_a_simulators() -> None
     clock = VirtualClock()
     run(main, clock)
     assert stamps == [int(clock.start), 0]
-
-
-def test_a_message_is_one_line_of_json() -> None:
-    text: Any = line(topics=[("/a", TWIST)], node="/n\n")
-    assert text.endswith(b"\n")
-    assert text.count(b"\n") == 1
-    assert json.loads(text) == {"topics": [["/a", TWIST]], "node": "/n\n"}

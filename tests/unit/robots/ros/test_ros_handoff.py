@@ -125,14 +125,6 @@ async def test_blocking_work_is_done_in_a_thread() -> None:
         await in_thread(loop, fail, "worker")
 
 
-async def test_cancelled_work_has_no_effect() -> None:
-    go = threading.Event()
-    future = in_thread(asyncio.get_running_loop(), go.wait, "worker")
-    future.cancel()
-    go.set()
-    await asyncio.sleep(0)
-
-
 async def test_a_thread_asks_the_loop_and_waits() -> None:
     loop = asyncio.get_running_loop()
 

@@ -1,38 +1,16 @@
 """The graph inside the process: order, time and what only it promises."""
 
-from collections.abc import Callable, Coroutine
 from typing import Any
 
 import pytest
+from graph_lab import GraphLab
 
-from jacaros.robots.ros.backend import Backend
-from jacaros.robots.ros.drivers.memory.graph import MemoryGraph
 from jacaros.robots.ros.errors import CallFailed, CallTimedOut
 from jacaros.robots.ros.node import Publisher, Sample
-from jacaros.robots.ros.open import open_backend
 from jacaros.robots.ros.qos import QoS
-from jacaros.runtime.clock import VIRTUAL_EPOCH, VirtualClock, run
+from jacaros.runtime.clock import VIRTUAL_EPOCH
 
 ADD, INT = "example_interfaces/srv/AddTwoInts", "std_msgs/msg/Int32"
-
-
-class Nodes:
-    """Nodes of one graph on one virtual clock."""
-
-    def __init__(self) -> None:
-        self.clock = VirtualClock()
-        self.graph = MemoryGraph()
-        self.log: list[str] = []
-
-    async def open(self, name: str) -> Backend:
-        backend = open_backend("memory", self.clock, name, graph=self.graph, log=self.log.append)
-        await backend.start()
-        return backend
-
-    async def pair(self) -> tuple[Backend, Publisher]:
-        """A node, and its publisher of numbers on /a."""
-        node = await self.open("node")
-        return node, node.publisher("/a", INT)
 
 
 def numbers(publisher: Publisher, *numbers: int) -> None:
@@ -40,16 +18,8 @@ def numbers(publisher: Publisher, *numbers: int) -> None:
         publisher.publish(publisher.message(data=number))
 
 
-def play(scene: Callable[[Nodes], Coroutine[Any, Any, None]]) -> None:
-    nodes = Nodes()
-    run(lambda: scene(nodes), nodes.clock)
-
-
-Nodes.play = staticmethod(play)
-
-
-async def test_messages_are_delivered_in_the_order_of_publishing_over_all_topics(lab: Nodes) -> None:
-    one, two = await lab.open("one"), await lab.open("two")
+async def test_messages_are_delivered_in_the_order_of_publishing_over_all_topics(lab: GraphLab) -> None:
+    one, two = await lab.node("one"), await lab.node("two")
     got: list[Sample] = []
     for topic in ("/a", "/b"):
         for node in (one, two):
@@ -64,8 +34,9 @@ async def test_messages_are_delivered_in_the_order_of_publishing_over_all_topics
     assert told == [(t, n) for n in range(5) for t in ("/a", "/a", "/b", "/b")]
 
 
-async def test_a_message_is_passed_by_reference_and_takes_no_time(lab: Nodes) -> None:
-    node, publisher = await lab.pair()
+async def test_a_message_is_passed_by_reference_and_takes_no_time(lab: GraphLab) -> None:
+    node = await lab.node("node")
+    publisher = node.publisher("/a", INT)
     got: list[Sample] = []
     node.subscription("/a", INT, got.append)
     await lab.clock.sleep(2.5)
@@ -76,8 +47,9 @@ async def test_a_message_is_passed_by_reference_and_takes_no_time(lab: Nodes) ->
     assert got[0].stamp == VIRTUAL_EPOCH + 2.5
 
 
-async def test_a_message_published_in_a_callback_comes_after_what_waits(lab: Nodes) -> None:
-    node, publisher = await lab.pair()
+async def test_a_message_published_in_a_callback_comes_after_what_waits(lab: GraphLab) -> None:
+    node = await lab.node("node")
+    publisher = node.publisher("/a", INT)
     got: list[int] = []
 
     def receive(sample: Sample) -> None:
@@ -91,8 +63,9 @@ async def test_a_message_published_in_a_callback_comes_after_what_waits(lab: Nod
     assert got == [1, 2, 3, 10]
 
 
-async def test_closing_in_a_callback_stops_what_waits(lab: Nodes) -> None:
-    node, publisher = await lab.pair()
+async def test_closing_in_a_callback_stops_what_waits(lab: GraphLab) -> None:
+    node = await lab.node("node")
+    publisher = node.publisher("/a", INT)
     got: list[int] = []
 
     def receive(sample: Sample) -> None:
@@ -106,8 +79,8 @@ async def test_closing_in_a_callback_stops_what_waits(lab: Nodes) -> None:
     assert publisher.subscription_count == 0
 
 
-async def test_nodes_with_different_types_for_a_topic_both_log_it(lab: Nodes) -> None:
-    one, two = await lab.open("one"), await lab.open("two")
+async def test_nodes_with_different_types_for_a_topic_both_log_it(lab: GraphLab) -> None:
+    one, two = await lab.node("one"), await lab.node("two")
     publisher = one.publisher("/a", INT)
     got: list[Sample] = []
     subscription = two.subscription("/a", "std_msgs/msg/String", got.append)
@@ -121,8 +94,8 @@ async def test_nodes_with_different_types_for_a_topic_both_log_it(lab: Nodes) ->
     ]
 
 
-async def test_an_incompatible_wish_is_reported(lab: Nodes) -> None:
-    node = await lab.open("node")
+async def test_an_incompatible_wish_is_reported(lab: GraphLab) -> None:
+    node = await lab.node("node")
     node.publisher("/a", INT, QoS(reliability="best_effort"))
     node.subscription("/a", INT, print)
     assert lab.log == [
@@ -134,8 +107,8 @@ async def test_an_incompatible_wish_is_reported(lab: Nodes) -> None:
     ]
 
 
-async def test_transient_local_keeps_as_many_messages_as_its_depth(lab: Nodes) -> None:
-    node = await lab.open("node")
+async def test_transient_local_keeps_as_many_messages_as_its_depth(lab: GraphLab) -> None:
+    node = await lab.node("node")
     kept = QoS(durability="transient_local", depth=3)
     numbers(node.publisher("/a", INT, kept), *range(5))
     got: list[Sample] = []
@@ -144,8 +117,8 @@ async def test_transient_local_keeps_as_many_messages_as_its_depth(lab: Nodes) -
     assert [each.message.data for each in got] == [2, 3, 4]
 
 
-async def test_leaving_nodes_take_their_topics_and_services_along(lab: Nodes) -> None:
-    one, two = await lab.open("one"), await lab.open("two")
+async def test_leaving_nodes_take_their_topics_and_services_along(lab: GraphLab) -> None:
+    one, two = await lab.node("one"), await lab.node("two")
     publisher = one.publisher("/a", INT)
     two.subscription("/a", INT, print)
     two.service("/add", ADD, lambda r: {"sum": r.a + r.b})
@@ -156,8 +129,8 @@ async def test_leaving_nodes_take_their_topics_and_services_along(lab: Nodes) ->
     assert two.connected is False
 
 
-async def test_time_outs_are_measured_on_the_clock(lab: Nodes) -> None:
-    node = await lab.open("node")
+async def test_time_outs_are_measured_on_the_clock(lab: GraphLab) -> None:
+    node = await lab.node("node")
 
     async def slow(request: Any) -> dict[str, int]:
         await lab.clock.sleep(100)
@@ -172,8 +145,8 @@ async def test_time_outs_are_measured_on_the_clock(lab: Nodes) -> None:
     assert lab.clock.elapsed == 199
 
 
-async def test_waiting_for_the_server_uses_up_the_time_out(lab: Nodes) -> None:
-    node = await lab.open("node")
+async def test_waiting_for_the_server_uses_up_the_time_out(lab: GraphLab) -> None:
+    node = await lab.node("node")
 
     async def slow(request: Any) -> None:
         await lab.clock.sleep(3)
@@ -184,8 +157,8 @@ async def test_waiting_for_the_server_uses_up_the_time_out(lab: Nodes) -> None:
     assert lab.clock.elapsed == 4
 
 
-async def test_closing_a_service_fails_the_calls_under_way(lab: Nodes) -> None:
-    node = await lab.open("node")
+async def test_closing_a_service_fails_the_calls_under_way(lab: GraphLab) -> None:
+    node = await lab.node("node")
 
     async def never(request: Any) -> None:
         await lab.clock.sleep(1e9)
@@ -196,8 +169,8 @@ async def test_closing_a_service_fails_the_calls_under_way(lab: Nodes) -> None:
         await node.client("/never", ADD).call({})
 
 
-async def test_a_call_of_another_type_fails(lab: Nodes) -> None:
-    node = await lab.open("node")
+async def test_a_call_of_another_type_fails(lab: GraphLab) -> None:
+    node = await lab.node("node")
     node.service("/add", ADD, lambda r: None)
     with pytest.raises(
         CallFailed, match="is of type example_interfaces/srv/AddTwoInts, not std_srvs/srv/Empty"
@@ -205,8 +178,8 @@ async def test_a_call_of_another_type_fails(lab: Nodes) -> None:
         await node.client("/add", "std_srvs/srv/Empty").call()
 
 
-async def test_a_newer_service_replaces_the_older_one(lab: Nodes) -> None:
-    node = await lab.open("node")
+async def test_a_newer_service_replaces_the_older_one(lab: GraphLab) -> None:
+    node = await lab.node("node")
     old = node.service("/add", ADD, lambda r: {"sum": 1})
     node.service("/add", ADD, lambda r: {"sum": 2})
     old.close()
@@ -217,8 +190,8 @@ def test_two_runs_are_the_same() -> None:
     def once() -> list[tuple[float, int]]:
         got: list[tuple[float, int]] = []
 
-        async def scene(nodes: Nodes) -> None:
-            one, two = await nodes.open("one"), await nodes.open("two")
+        async def scene(nodes: GraphLab) -> None:
+            one, two = await nodes.node("one"), await nodes.node("two")
             publisher = one.publisher("/a", INT)
             two.subscription("/a", INT, lambda s: got.append((s.stamp, s.message.data)))
             two.service("/add", ADD, lambda r: {"sum": r.a + r.b})
@@ -228,7 +201,7 @@ def test_two_runs_are_the_same() -> None:
                 publisher.publish(publisher.message(data=(await client.call({"a": number, "b": 1})).sum))
             await nodes.clock.sleep(1)
 
-        play(scene)
+        GraphLab.play(scene)
         return got
 
     assert once() == once()
@@ -238,10 +211,10 @@ def test_two_runs_are_the_same() -> None:
 def test_publishing_after_the_end_of_the_loop_does_nothing() -> None:
     publishers: list[Any] = []
 
-    async def scene(nodes: Nodes) -> None:
-        node = await nodes.open("node")
+    async def scene(nodes: GraphLab) -> None:
+        node = await nodes.node("node")
         node.subscription("/a", INT, print)
         publishers.append(node.publisher("/a", INT))
 
-    play(scene)
+    GraphLab.play(scene)
     publishers[0].publish(publishers[0].message(data=1))

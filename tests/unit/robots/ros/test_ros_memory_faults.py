@@ -1,40 +1,30 @@
 """Faults that tests inject into the graph inside the process."""
 
 import asyncio
-from collections.abc import Callable, Coroutine
 from typing import Any
 
 import pytest
+from graph_lab import GraphLab
 
 from jacaros.robots.ros.action import SERVER_LOST_AFTER, GoalStatus
 from jacaros.robots.ros.backend import Backend
-from jacaros.robots.ros.drivers.memory.graph import MemoryGraph, both, delayed, dropped, duplicated
+from jacaros.robots.ros.drivers.memory.graph import both, delayed, dropped, duplicated
 from jacaros.robots.ros.errors import CallFailed, RosError, ServerLost, ServiceUnavailable
-from jacaros.robots.ros.open import open_backend
 from jacaros.robots.ros.parameter import DeclaredParameter
 from jacaros.robots.ros.qos import QoS
-from jacaros.runtime.clock import VirtualClock, run
 
 ADD, COUNT, INT = "example_interfaces/srv/AddTwoInts", "jacaros_interfaces/action/Count", "std_msgs/msg/Int32"
 
 
-class Lab:
+class Lab(GraphLab):
     """Two nodes, what one publishes on /n, and what the other got and when."""
 
     def __init__(self) -> None:
-        self.clock = VirtualClock()
-        self.graph = MemoryGraph()
-        self.log: list[str] = []
+        super().__init__()
         self.got: list[tuple[float, int]] = []
 
     async def open(self) -> tuple[Backend, Backend]:
-        nodes = [
-            open_backend("memory", self.clock, name, graph=self.graph, log=self.log.append)
-            for name in ("here", "there")
-        ]
-        for node in nodes:
-            await node.start()
-        here, there = nodes
+        here, there = await self.node("here"), await self.node("there")
         self.publisher = here.publisher("/n", INT, QoS(durability="transient_local", depth=1))
         there.subscription(
             "/n",
@@ -54,14 +44,6 @@ class Lab:
             await self.clock.sleep(goal.request.period)
             goal.feedback(current=number)
         return {"last": goal.request.target}
-
-
-def play(scene: Callable[[Lab], Coroutine[Any, Any, None]]) -> None:
-    lab = Lab()
-    run(lambda: scene(lab), lab.clock)
-
-
-Lab.play = staticmethod(play)
 
 
 async def goal_of_counting(lab: Lab) -> Any:
@@ -97,7 +79,7 @@ def test_a_jitter_lets_messages_overtake_each_other_in_the_same_way_each_time() 
         seen.append(lab.got)
 
     for _ in range(2):
-        play(scene)
+        Lab.play(scene)
     numbers = [number for _, number in seen[0]]
     assert sorted(numbers) == list(range(20)) != numbers
     assert seen[0] == seen[1]
@@ -155,15 +137,6 @@ async def test_a_vanished_service_does_not_answer_and_its_loss_is_found_out(lab:
     with pytest.raises(CallFailed, match="went away during the call"):
         await call
     assert (lab.clock.elapsed, ended, client.ready) == (0.5 + SERVER_LOST_AFTER, ["handler"], False)
-
-
-async def test_a_vanished_action_server_is_lost_after_a_while(lab: Lab) -> None:
-    goal = await goal_of_counting(lab)
-    await lab.clock.sleep(0.5)
-    lab.graph.vanish("/count")
-    with pytest.raises(ServerLost, match="went away during goal"):
-        await goal.outcome()
-    assert lab.clock.elapsed == pytest.approx(0.5 + SERVER_LOST_AFTER)
 
 
 async def test_a_server_in_the_place_of_a_vanished_one_does_not_know_its_goals(lab: Lab) -> None:

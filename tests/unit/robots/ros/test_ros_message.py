@@ -144,11 +144,6 @@ def test_field_names_leave_fillers_out() -> None:
     assert field_names(3) is None
 
 
-def test_an_unknown_type_has_a_help() -> None:
-    with pytest.raises(UnknownInterface, match=r"interface_paths .*: my_msgs/msg/Thing\.msg"):
-        make("my_msgs/msg/Thing")
-
-
 def defined(folder: Path, **definitions: str) -> DefinitionSchema:
     """A schema of a package of ours; a name such as Order_msg has its definition."""
     for name, text in definitions.items():
@@ -157,21 +152,6 @@ def defined(folder: Path, **definitions: str) -> DefinitionSchema:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
     return DefinitionSchema([folder])
-
-
-def test_definitions_in_folders_are_found(tmp_path: Path) -> None:
-    order, buy = (
-        "geometry_msgs/Point where\nint32[<=3] items\n",
-        "string what # the thing\n---\nfloat64 price\n",
-    )
-    schema = defined(tmp_path, Order_msg=order, Buy_srv=buy)
-    made = schema.make("shop_msgs/msg/Order", {"where": {"x": 2}, "items": [1, 2]})
-    assert (made.where.x, made.items.tolist()) == (2.0, [1, 2])
-    with pytest.raises(MessageMismatch, match="4 elements"):
-        schema.make("shop_msgs/msg/Order", {"items": [1, 2, 3, 4]})
-    schema.load("shop_msgs/srv/Buy")
-    assert list(schema.fields("shop_msgs/srv/Buy_Request")) == ["what"]
-    assert list(schema.fields("shop_msgs/srv/Buy_Response")) == ["price"]
 
 
 def test_arrays_of_booleans_are_lists_and_others_have_the_items_of_their_type(tmp_path: Path) -> None:

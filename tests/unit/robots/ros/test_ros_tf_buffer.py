@@ -218,10 +218,3 @@ def test_between_two_parents_the_old_one_is_valid() -> None:
     assert known.lookup("left", "box", 1.5).translation == (1.0, 0.0, 0.0)
     with pytest.raises(TransformUnavailable, match="not connected"):
         known.lookup("right", "box", 1.5)
-
-
-def test_a_way_up_and_down_turns_at_the_common_ancestor() -> None:
-    camera = ("map", "camera", at(1.0, 0.0, math.pi / 2, stamp=1.0))
-    found = buffer(None, camera, ("map", "box", at(1.0, 2.0, stamp=1.0))).lookup("camera", "box", 1.0)
-    # two metres in front of a camera that looks along y
-    assert found.translation == pytest.approx((2.0, 0.0, 0.0))

@@ -1,41 +1,22 @@
 """Listening to transforms: reports, bad messages, clocks that go back."""
 
 import asyncio
-from collections.abc import Callable, Coroutine
 from typing import Any
 
 import pytest
+from graph_lab import GraphLab
 
 from jacaros.robots.ros.backend import Backend
-from jacaros.robots.ros.drivers.memory.graph import MemoryGraph
-from jacaros.robots.ros.errors import RosError, TransformUnavailable
-from jacaros.robots.ros.open import open_backend
-from jacaros.runtime.clock import VirtualClock, run
+from jacaros.robots.ros.errors import TransformUnavailable
 
 
-class Lab:
+class Lab(GraphLab):
     """A node that sends, and one that listens."""
 
-    def __init__(self) -> None:
-        self.clock = VirtualClock()
-        self.log: list[str] = []
-
     async def open(self) -> tuple[Backend, Backend]:
-        graph = MemoryGraph()
-        robot = open_backend("memory", self.clock, "robot", graph=graph, log=self.log.append)
-        brain = open_backend("memory", self.clock, "brain", graph=graph, log=self.log.append)
-        await robot.start()
-        await brain.start()
+        robot, brain = await self.node("robot"), await self.node("brain")
         brain.tf_listen()
         return robot, brain
-
-
-def play(scene: Callable[[Lab], Coroutine[Any, Any, None]]) -> None:
-    lab = Lab()
-    run(lambda: scene(lab), lab.clock)
-
-
-Lab.play = staticmethod(play)
 
 
 def stamped(x: float, stamp: float, child: str = "base", **rotation: float) -> dict[str, Any]:
@@ -109,11 +90,3 @@ async def test_a_clock_that_goes_back_empties_the_buffer(lab: Lab) -> None:
     assert lab.log == ["the clock went back by 20 s; the transforms known so far are forgotten"]
     found = brain.tf_lookup("odom", "wheel")
     assert (found.translation[0], found.stamp) == (3.5, pytest.approx(9.95))
-
-
-async def test_an_unknown_level_is_refused(lab: Lab) -> None:
-    robot, _ = await lab.open()
-    with pytest.raises(
-        RosError, match="unknown log level 'loud': expected one of debug, info, warn, error, fatal"
-    ):
-        robot.rosout("loud", "text")

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.robots.ros.errors import UnknownInterface
+from jacaros.robots.ros.errors import MessageMismatch, UnknownInterface
 from jacaros.robots.ros.interfaces import split
 from jacaros.robots.ros.message import constant, plain
 from jacaros.robots.ros.typestore import DefinitionSchema
@@ -51,13 +51,25 @@ def test_parts_are_known_without_asking_for_the_whole(tmp_path: Path) -> None:
     assert list(schema.fields("kitchen_msgs/srv/Open_Response")) == ["open"]
 
 
+def test_a_bounded_array_of_ours_is_checked(tmp_path: Path) -> None:
+    write(tmp_path, "kitchen_msgs/msg/Order.msg", "geometry_msgs/Point where\nint32[<=3] items\n")
+    schema = DefinitionSchema([tmp_path])
+    made = schema.make("kitchen_msgs/msg/Order", {"where": {"x": 2}, "items": [1, 2]})
+    assert (made.where.x, made.items.tolist()) == (2.0, [1, 2])
+    with pytest.raises(MessageMismatch, match="4 elements"):
+        schema.make("kitchen_msgs/msg/Order", {"items": [1, 2, 3, 4]})
+
+
 @pytest.mark.parametrize(
     ("name", "message"),
     [
         ("no_msgs/action/Nothing", "action type no_msgs/action/Nothing is not known"),
         ("no_msgs/action/Nothing_Goal", "action type no_msgs/action/Nothing is not known"),
         ("no_msgs/srv/Nothing_Request", "service type no_msgs/srv/Nothing is not known"),
-        ("no_msgs/msg/Nothing", "message type no_msgs/msg/Nothing is not known"),
+        (
+            "no_msgs/msg/Nothing",
+            r"message type no_msgs/msg/Nothing is not known.*interface_paths .*: no_msgs/msg/Nothing\.msg",
+        ),
     ],
 )
 def test_unknown_types_are_reported(name: str, message: str) -> None:
