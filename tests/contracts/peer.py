@@ -290,10 +290,6 @@ class Peer(ActionCommands, GraphCommands):
             self._clients[name] = self._backend.client(name, type_name)
         return self._clients[name]
 
-    def broadcast(self, child: str, static: bool = False) -> None:
-        transform = {"header": {"frame_id": "odom", "stamp": 2.5}, "child_frame_id": child}
-        self._backend.tf_broadcast(transform, static)
-
     def hook(self, topic: str, fields: dict[str, Any]) -> None:
         publisher = self._publishers[topic]
         message = publisher.message(**fields)

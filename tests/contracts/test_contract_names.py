@@ -1,4 +1,4 @@
-"""Contract: names, namespaces, capabilities, messages and transforms."""
+"""Contract: names, namespaces and the fields of messages."""
 
 import pytest
 
@@ -62,35 +62,3 @@ def test_fields_are_described_alike_everywhere(left):
     )
     assert left.fields("std_msgs/msg/Header")["stamp"] == "builtin_interfaces/msg/Time"
     assert left.fields("std_msgs/msg/Empty") == {}
-
-
-def test_messages_are_made_without_a_topic(left):
-    message = left.message("geometry_msgs/PoseStamped", header={"stamp": 1.5}, pose={"position": {"x": 1}})
-    assert message["header"]["stamp"] == {"sec": 1, "nanosec": 500_000_000}
-    assert message["pose"]["position"] == {"x": 1.0, "y": 0.0, "z": 0.0}
-    assert message["pose"]["orientation"]["w"] == 1.0
-
-
-def test_transforms_are_broadcast(graph, left, right):
-    right.subscribe("/tf", "tf2_msgs/msg/TFMessage")
-
-    def arrives() -> bool:
-        left.broadcast("base_link")
-        return bool(right.received("/tf"))
-
-    graph.wait_until(arrives, "the transform arrives")
-    transform = right.received("/tf")[0]["transforms"][0]
-    assert transform["child_frame_id"] == "base_link"
-    assert transform["transform"]["rotation"]["w"] == 1.0
-
-
-def test_static_transforms_wait_for_late_receivers(graph, left, right):
-    left.broadcast("laser", static=True)
-    left.broadcast("camera", static=True)
-    right.subscribe("/tf_static", "tf2_msgs/msg/TFMessage", durability="transient_local", depth=1)
-    graph.wait_until(
-        lambda: right.received("/tf_static") and len(right.received("/tf_static")[-1]["transforms"]) == 2,
-        "both arrive in one message",
-    )
-    children = [t["child_frame_id"] for t in right.received("/tf_static")[-1]["transforms"]]
-    assert children == ["laser", "camera"]

@@ -23,13 +23,8 @@ def serving(graph, left, right, name, behaviour):
     graph.wait_until(lambda: left.ready(name), "the service is found")
 
 
-def test_a_service_answers(graph, left, right, topic):
-    assert right.serve(topic) == topic
-    assert left.call(topic, {"a": 2, "b": 40}, timeout=60) == {"sum": 42}
-
-
 def test_each_node_serves_the_other(graph, left, right, topic):
-    left.serve(topic + "/left")
+    assert left.serve(topic + "/left") == topic + "/left"
     right.serve(topic + "/right")
     assert left.call(topic + "/right", {"a": 1, "b": 1}, timeout=60) == {"sum": 2}
     assert right.call(topic + "/left", {"a": 1, "b": -3}, timeout=60) == {"sum": -2}

@@ -20,13 +20,6 @@ def connected(graph: Any, pair: Pair, topic: str, type_name: str, **qos: Any) ->
     return left, right
 
 
-def test_a_message_reaches_the_other_node(graph, pair, topic):
-    left, right = connected(graph, pair, topic, "std_msgs/msg/String")
-    left.publish(topic, {"data": "schön"})
-    graph.wait_until(lambda: right.received(topic), "the message arrives")
-    assert right.received(topic) == [{"data": "schön"}]
-
-
 def test_the_first_message_of_a_publisher_that_waited_for_its_match_arrives(graph, left, right, topic):
     for number in range(5):
         right.subscribe(f"{topic}/n{number}", "std_msgs/msg/Int32")
@@ -56,7 +49,7 @@ def test_messages_keep_their_order(graph, pair, topic):
 def test_a_nested_message_arrives_as_it_was_sent(graph, pair, topic):
     left, right = connected(graph, pair, topic, "nav_msgs/msg/Odometry")
     fields = {
-        "header": {"stamp": 1234.5, "frame_id": "odom"},
+        "header": {"stamp": 1234.5, "frame_id": "größe"},
         "child_frame_id": "base",
         "pose": {"pose": {"position": {"x": 1, "y": -2.5}}, "covariance": [0.5] * 36},
         "twist": {"twist": {"angular": {"z": 0.25}}},
@@ -65,7 +58,7 @@ def test_a_nested_message_arrives_as_it_was_sent(graph, pair, topic):
     graph.wait_until(lambda: right.received(topic), "the message arrives")
     [message] = right.received(topic)
     assert message["header"]["stamp"] == {"sec": 1234, "nanosec": 500_000_000}
-    assert message["header"]["frame_id"] == "odom"
+    assert message["header"]["frame_id"] == "größe"
     assert message["pose"]["pose"]["position"] == {"x": 1.0, "y": -2.5, "z": 0.0}
     assert message["pose"]["pose"]["orientation"] == {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
     assert message["pose"]["covariance"] == [0.5] * 36
@@ -97,7 +90,7 @@ def test_arrays_of_all_kinds_arrive_as_they_were_sent(graph, pair, topic):
     assert right.received(f"{topic}/t5")[0]["values"] == [{"key": "k", "value": "v"}]
 
 
-def test_a_sample_has_topic_time_and_cause(graph, pair, topic):
+def test_a_sample_comes_on_the_thread_of_the_loop_with_topic_time_and_cause(graph, pair, topic):
     left, right = connected(graph, pair, topic, "std_msgs/msg/Bool")
     left.publish(topic, {"data": True})
     graph.wait_until(lambda: right.received(topic), "the message arrives")
@@ -105,12 +98,6 @@ def test_a_sample_has_topic_time_and_cause(graph, pair, topic):
     assert sample["topic"] == topic
     assert sample["cause"] == ["sample", topic]
     assert 0 <= sample["age"] < 60
-
-
-def test_callbacks_come_on_the_thread_of_the_loop(graph, pair, topic):
-    left, right = connected(graph, pair, topic, "std_msgs/msg/Bool")
-    left.publish(topic, {"data": True})
-    graph.wait_until(lambda: right.received(topic), "the message arrives")
     assert right.callback_threads() == ["MainThread"]
 
 
@@ -241,12 +228,6 @@ def test_a_closed_publisher_is_gone(graph, pair, topic):
     left, right = connected(graph, pair, topic, "std_msgs/msg/Int32")
     left.unadvertise(topic)
     graph.wait_until(lambda: right.publisher_count(topic) == 0, "the subscription notices")
-
-
-def test_a_node_receives_its_own_messages(graph, left, topic):
-    connected(graph, (left, left), topic, "std_msgs/msg/Int32")
-    left.publish(topic, {"data": 3})
-    graph.wait_until(lambda: left.received(topic), "the message arrives")
 
 
 def test_fields_do_for_a_message(graph, pair, topic):

@@ -1,27 +1,23 @@
 """actionlib's topics, on a graph inside the process: goals that the server never got."""
 
 import asyncio
-from collections.abc import Callable, Coroutine
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from graph_lab import GraphLab
 
 from jacaros.robots.ros.action import ActionPolicy, GoalStatus, ServerGoal
 from jacaros.robots.ros.action_client import ActionClient, OrphanPolicy
 from jacaros.robots.ros.actionlib import ActionlibServer, ActionlibWire
-from jacaros.robots.ros.drivers.memory.backend import MemoryBackend
-from jacaros.robots.ros.drivers.memory.graph import MemoryGraph
 from jacaros.robots.ros.errors import CallTimedOut, GoalRejected
-from jacaros.robots.ros.open import open_backend
 from jacaros.robots.ros.protocols.actionlib import OVERTAKEN, STATUS_PERIOD, part_type
 from jacaros.robots.ros.protocols.rosbridge_messages import BridgeSchema
-from jacaros.runtime.clock import VirtualClock, run
 
 COUNT = "jacaros_interfaces/action/Count"
 
 
-class Actionlib:
+class Actionlib(GraphLab):
     """A server and a client of ``/count``; what the client publishes on its goal topic can be swallowed.
 
     Attributes:
@@ -32,21 +28,17 @@ class Actionlib:
     """
 
     def __init__(self) -> None:
-        self.clock = VirtualClock()
+        super().__init__()
         self.began: list[int] = []
-        self.logged: list[str] = []
         self.stopped: list[int] = []
         self.swallowed = 0
         self.sent = 0
-        self._nodes: list[MemoryBackend] = []
 
     async def open(self) -> ActionClient:
-        graph = MemoryGraph()
-        self.graph = graph
         schema = BridgeSchema()
         for part in ("ActionGoal", "ActionResult", "ActionFeedback"):
             schema.fields(part_type(COUNT, part))
-        robot, here = await self._node(graph, "robot"), await self._node(graph, "client")
+        robot, here = await self.node("robot"), await self.node("client")
         policy = ActionPolicy(lambda goal: None if goal.target >= 0 else "less than nothing")
         self.server = ActionlibServer(robot, "/count", COUNT, self._count, policy)
         sender = ActionClient(self.clock, print, here.factory, "/count", COUNT)
@@ -67,23 +59,12 @@ class Actionlib:
     async def run_again(self, orphans: OrphanPolicy, name: str = "client") -> ActionClient:
         """Kill the client, and give the one of the next run, with a node called *name*."""
         self.graph.vanish("/client")
-        here = await self._node(self.graph, name, orphans)
+        here = await self.node(name, orphans=orphans)
         sender = ActionClient(
-            self.clock, self.logged.append, here.factory, "/count", COUNT, here.leaving_goals, here.orphans
+            self.clock, here.log, here.factory, "/count", COUNT, here.leaving_goals, here.orphans
         )
         sender.wire = ActionlibWire(here, sender)
         return sender
-
-    async def _node(self, graph: MemoryGraph, name: str, orphans: OrphanPolicy = "keep") -> MemoryBackend:
-        node = open_backend("memory", self.clock, name, graph=graph, log=self.logged.append, orphans=orphans)
-        assert isinstance(node, MemoryBackend)
-        await node.start()
-        self._nodes.append(node)
-        return node
-
-    async def close(self) -> None:
-        for node in self._nodes:
-            await node.close()
 
     async def _count(self, goal: ServerGoal) -> Any:
         self.began.append(goal.request.target)
@@ -95,19 +76,6 @@ class Actionlib:
         return {"last": goal.request.target}
 
 
-def play(scene: Callable[[Actionlib], Coroutine[Any, Any, None]]) -> None:
-    graph = Actionlib()
-
-    async def main() -> None:
-        await scene(graph)
-        await graph.close()
-
-    run(main, graph.clock)
-
-
-Actionlib.play = staticmethod(play)
-
-
 async def test_the_goal_of_a_killed_run_is_cancelled_before_the_next_run_sends_one(lab: Actionlib) -> None:
     client = await lab.open()
     await client.send({"target": 3, "period": 900.0}, timeout=20)
@@ -117,7 +85,7 @@ async def test_the_goal_of_a_killed_run_is_cancelled_before_the_next_run_sends_o
     assert (await goal.outcome(5)).status is GoalStatus.SUCCEEDED
     assert lab.began == [3, 4]
     found = "action /count is still executing a goal of an earlier run of this node"
-    assert f"warning: {found}; cancelling it" in lab.logged
+    assert f"warning: {found}; cancelling it" in lab.log
 
 
 @pytest.mark.parametrize(
@@ -135,7 +103,7 @@ async def test_the_goal_of_a_killed_run_goes_on_by_request_or_if_it_is_of_anothe
     await lab.clock.sleep(5)
     assert lab.stopped == []
     found = "action /count is still executing a goal of an earlier run of this node; the robot may be moving"
-    assert [line for line in lab.logged if "earlier run" in line] == [f"warning: {found}"] * told
+    assert [line for line in lab.log if "earlier run" in line] == [f"warning: {found}"] * told
 
 
 async def test_a_server_is_ready_after_its_first_message_on_all_topics(lab: Actionlib) -> None:
