@@ -36,7 +36,7 @@ esac
 
 sources=$(mktemp -d)
 trap 'rm -rf "$sources"' EXIT
-write() { PYTHONPATH=$root/src "$venv/bin/python" -m jacaros.robots.ros.interfaces.ros2_package "$sources" "$@" >/dev/null; }
+write() { PYTHONPATH=$root/src "$venv/bin/python" "$root/tools/ros2_package.py" "$sources" "$@" >/dev/null; }
 stamp() { echo "$venv/share/$1/.fingerprint"; }
 fingerprint() { (cd "$sources/$1" && cat "$root/tools/build_ros2_interfaces.sh" $(find . -type f | LC_ALL=C sort) | sha256sum); }
 is_there() { [ -f "$(stamp "$1")" ] && [ "$(cat "$(stamp "$1")")" = "$(fingerprint "$1")" ]; }

@@ -1,18 +1,18 @@
 """The package of look-alikes that is generated for ROS 2."""
 
 import re
+import runpy
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 
-from jacaros.robots.ros.interfaces.ros2_package import (
-    BUILT_IN,
-    PACKAGE,
-    definitions,
-    origin,
-    similar_types,
-    write_package,
+from jacaros.robots.ros.interfaces import BUILT_IN, origin
+from jacaros.robots.ros.interfaces import SUBSTITUTES as PACKAGE
+
+TOOL = runpy.run_path(str(Path(__file__).parents[4] / "tools" / "ros2_package.py"))
+definitions, similar_types, write_package = (
+    TOOL[name] for name in ("definitions", "similar_types", "write_package")
 )
 
 

@@ -8,6 +8,7 @@ Definitions are the usual text files, ``<root>/<package>/msg/<Type>.msg``, ``<ro
 import os
 import sys
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 
 BUILT_IN = Path(__file__).parent
@@ -15,6 +16,18 @@ KINDS = {"msg": "message", "srv": "service", "action": "action"}
 """Kinds of types, by the middle part of their names."""
 PARTS = {"srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
 """The messages of services and actions, in the order of their definitions."""
+SUBSTITUTES = "jacaros_interfaces"
+"""A package for ROS 2 that has a substitute for the types of missing packages; ``tools/ros2_package.py`` writes it."""
+NOT_SUBSTITUTED = {
+    # Every ROS 2 has these; their definitions are here for the backends that have no packages.
+    *("action_msgs", "actionlib_msgs", "builtin_interfaces", "diagnostic_msgs", "geometry_msgs"),
+    *("lifecycle_msgs", "nav_msgs", "rcl_interfaces", "rosgraph_msgs", "sensor_msgs", "shape_msgs"),
+    *("std_msgs", "std_srvs", "stereo_msgs", "trajectory_msgs", "visualization_msgs"),
+    # Robots and stacks that stayed with ROS 1: no node in a ROS 2 graph uses these types.
+    *("kobuki_msgs", "move_base_msgs", "perception_msgs"),
+    # Built under its own name, which all other nodes use on /tf.
+    "tf2_msgs",
+}
 
 
 def definition(type_name: str, roots: Sequence[Path] = ()) -> str | None:
@@ -25,6 +38,13 @@ def definition(type_name: str, roots: Sequence[Path] = ()) -> str | None:
         if path.is_file():
             return path.read_text(encoding="utf-8")
     return None
+
+
+@cache
+def origin(kind: str, name: str) -> str | None:
+    """Return the package of the type that a type of `SUBSTITUTES` replaces; None if it is our own, or does not exist."""
+    packages = {path.parents[1].name for path in BUILT_IN.glob(f"*/{kind}/{name}.{kind}")} - NOT_SUBSTITUTED
+    return min(packages - {SUBSTITUTES}, default=None)
 
 
 def installed() -> tuple[Path, ...]:

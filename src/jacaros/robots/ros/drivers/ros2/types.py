@@ -11,8 +11,7 @@ from rclpy.parameter import Parameter  # type: ignore[import-not-found]
 
 from jacaros.robots.ros.errors import ParameterRefused, UnknownInterface
 from jacaros.robots.ros.fields import FieldType, from_ros2
-from jacaros.robots.ros.interfaces import PARTS
-from jacaros.robots.ros.interfaces.ros2_package import PACKAGE, origin
+from jacaros.robots.ros.interfaces import PARTS, SUBSTITUTES, origin
 from jacaros.robots.ros.message import Schema
 from jacaros.robots.ros.parameter import checked_value
 
@@ -42,13 +41,13 @@ class RosidlSchema(Schema):
         """Return the name of a type in the graph: a substitute has its own package. Raises `UnknownInterface`."""
         package, kind, name = type_name.split("/")
         self.message_class(type_name)
-        return type_name if _is_installed(package) else f"{PACKAGE}/{kind}/{name}"
+        return type_name if _is_installed(package) else f"{SUBSTITUTES}/{kind}/{name}"
 
     def usual_type(self, told: str) -> str:
         """Return our name of a type in the graph: a substitute has the name of the original."""
         package, _, rest = told.partition("/")
         kind, _, name = rest.partition("/")
-        if package != PACKAGE:
+        if package != SUBSTITUTES:
             return told
         looks_like = origin(kind, name)
         # If the original package is installed, the two differ, so the substitute must be recognised.
@@ -69,7 +68,7 @@ def _message_class(type_name: str) -> Any:
         return getattr(_message_class(f"{package}/{kind}/{whole}"), part)
     found = _imported(package, kind, name)
     if found is None and not _is_installed(package) and origin(kind, name) == package:
-        found = _imported(PACKAGE, kind, name)
+        found = _imported(SUBSTITUTES, kind, name)
     if found is None:
         raise UnknownInterface(
             f"{type_name} is not installed for ROS 2 (no {name} in a Python module {package}.{kind}); "

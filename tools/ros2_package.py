@@ -1,6 +1,6 @@
-"""ROS 2 packages made from the definitions in this folder, for installations that lack the original packages.
+"""ROS 2 packages made from the definitions of JaCaROS, for installations that lack the original packages.
 
-    python -m jacaros.robots.ros.interfaces.ros2_package FOLDER
+    python tools/ros2_package.py FOLDER
 
 writes ``FOLDER/jacaros_interfaces``, ready for ``colcon build``. That one package contains a substitute for every
 type here that ROS 2 has, whatever its package: ``nav2_msgs/action/NavigateToPose`` becomes
@@ -15,23 +15,10 @@ import re
 import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 
-PACKAGE = "jacaros_interfaces"
-"""The package of the substitutes."""
-BUILT_IN = Path(__file__).parent
-COMMON = {
-    *("action_msgs", "actionlib_msgs", "builtin_interfaces", "diagnostic_msgs", "geometry_msgs"),
-    *("lifecycle_msgs", "nav_msgs", "rcl_interfaces", "rosgraph_msgs", "sensor_msgs", "shape_msgs"),
-    *("std_msgs", "std_srvs", "stereo_msgs", "trajectory_msgs", "visualization_msgs"),
-}
-"""Packages that every ROS 2 has; their definitions are here for the backends that have no packages."""
-ROS1_ONLY = frozenset({"kobuki_msgs", "move_base_msgs", "perception_msgs"})
-"""Packages of robots and stacks that stayed with ROS 1: no node in a ROS 2 graph uses these types."""
-OWN_NAME = frozenset({"tf2_msgs"})
-"""Packages that are built under their own name."""
-KINDS = ("msg", "srv", "action")
+from jacaros.robots.ros.interfaces import BUILT_IN, KINDS, NOT_SUBSTITUTED
+from jacaros.robots.ros.interfaces import SUBSTITUTES as PACKAGE
 
 _REFERENCE = re.compile(r"^[ \t]*(?P<package>[a-z]\w*)/(?:msg/)?(?P<name>\w+)", re.MULTILINE)
 
@@ -74,21 +61,12 @@ def similar_types(root: Path = BUILT_IN) -> dict[str, DefinitionFile]:
     """
     found: dict[str, DefinitionFile] = {}
     for definition in definitions(root):
-        if definition.package in COMMON | OWN_NAME | ROS1_ONLY:
+        if definition.package in NOT_SUBSTITUTED:
             continue
         other = found.setdefault(definition.relative, definition)
         if _meaning(other) != _meaning(definition):
             raise ValueError(f"{other.path} and {definition.path} would have the same name in {PACKAGE}")
     return found
-
-
-@cache
-def origin(kind: str, name: str) -> str | None:
-    """Return the package of the type that a type of `PACKAGE` substitutes; None if it is our own, or does not exist."""
-    packages = [
-        found.package for found in similar_types().values() if (found.kind, found.name) == (kind, name)
-    ]
-    return packages[0] if packages and packages[0] != PACKAGE else None
 
 
 def write_package(folder: Path, package: str = PACKAGE, root: Path = BUILT_IN) -> Path:
@@ -204,7 +182,7 @@ def main() -> None:
     """Write a package to the folder on the command line."""
     parser = argparse.ArgumentParser(description="Write a ROS 2 package of interfaces, ready to be built.")
     parser.add_argument("folder", type=Path, help="where to put the package, such as the src of a workspace")
-    parser.add_argument("package", nargs="?", default=PACKAGE, choices=(PACKAGE, *sorted(OWN_NAME)))
+    parser.add_argument("package", nargs="?", default=PACKAGE, choices=(PACKAGE, "tf2_msgs"))
     arguments = parser.parse_args()
     print(write_package(arguments.folder, arguments.package))
 
