@@ -90,6 +90,7 @@ MIDDLEWARES: Mapping[str, Middleware] = {
         option="bridge",
         keyword="url",
         variable="ROSBRIDGE_URI",
+        default="ws://127.0.0.1:9090",
         schemes=("ws", "wss"),
         example="ws://robot.lab.example:9090",
         unreachable="Start rosbridge on the robot, or say where it is: --bridge ws://robot.lab.example:9090",

@@ -79,13 +79,12 @@ class GraphAddress:
         """
         from jacaros.robots.ros.names import NodeNames
 
-        middleware(self.ros)
+        chosen = middleware(self.ros)
         for name, kind in MIDDLEWARES.items():
-            given = self._given(kind)
-            if given is not None and self.ros != name:
+            if self._given(kind) is not None and self.ros != name:
                 raise UsageError(f"{kind.flag} needs --ros {name}, found --ros {self.ros}")
-            if given is not None and kind.schemes:
-                _check_address(kind, str(given))
+        if chosen.schemes:
+            self._check_address(chosen)
         if self.domain_id is not None and not 0 <= self.domain_id <= LAST_DOMAIN:
             raise UsageError(
                 f"--domain-id: expected an integer from 0 to {LAST_DOMAIN}, found {self.domain_id}"
@@ -95,6 +94,20 @@ class GraphAddress:
             NodeNames(self.node_name or "node", self.namespace, self.remap)
         except NameInvalid as wrong:
             raise UsageError(str(wrong)) from None
+
+    def _check_address(self, kind: Middleware) -> None:
+        from urllib.parse import urlsplit
+
+        try:
+            parts = urlsplit(self.identity)
+            complete = parts.scheme in kind.schemes and parts.hostname and parts.port
+        except ValueError:
+            complete = None
+        if not complete:
+            source = kind.variable if self._given(kind) is None else kind.flag
+            raise UsageError(
+                f"{source}: expected an address with a port, such as {kind.example}, found {self.identity!r}"
+            )
 
     def _check_parameters(self) -> None:
         if self.parameters and self.ros == "rosbridge":
@@ -138,20 +151,6 @@ class GraphAddress:
             parameters=self.parameters,
             orphans=self.orphans,
             **options,
-        )
-
-
-def _check_address(kind: Middleware, written: str) -> None:
-    from urllib.parse import urlsplit
-
-    try:
-        parts = urlsplit(written)
-        complete = parts.scheme in kind.schemes and parts.hostname and parts.port
-    except ValueError:
-        complete = None
-    if not complete:
-        raise UsageError(
-            f"{kind.flag}: expected an address with a port, such as {kind.example}, found {written!r}"
         )
 
 

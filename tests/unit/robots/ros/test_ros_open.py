@@ -7,7 +7,7 @@ import pytest
 
 from jacaros.robots.ros.backend import Backend
 from jacaros.robots.ros.errors import BackendUnavailable, NameInvalid, RosError
-from jacaros.robots.ros.open import open_backend
+from jacaros.robots.ros.open import GraphAddress, open_backend
 from jacaros.runtime.clock import VirtualClock, WallClock, run
 from jacaros.runtime.errors import UsageError
 
@@ -37,6 +37,15 @@ def test_a_missing_cbor2_names_the_extra(monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.setitem(sys.modules, "cbor2", None)
     with pytest.raises(BackendUnavailable, match=r"(?s)cbor2.*pip install 'jacaros\[rosbridge\]'"):
         open_backend("rosbridge", WallClock(), "node")
+
+
+def test_a_wrong_address_in_the_environment_is_reported_with_its_variable(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    GraphAddress("rosbridge").check()
+    monkeypatch.setenv("ROSBRIDGE_URI", "robot")
+    with pytest.raises(UsageError, match="ROSBRIDGE_URI: expected an address with a port, such as ws://"):
+        GraphAddress("rosbridge").check()
 
 
 def test_an_option_of_another_backend_is_a_usage_error() -> None:

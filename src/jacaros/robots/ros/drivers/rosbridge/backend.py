@@ -8,13 +8,11 @@ Everything happens on the loop; only exit hooks may send from another thread (se
 """
 
 import asyncio
-import os
 from collections.abc import Iterable
 from typing import Any
 
 from jacaros.robots.ros.backend import Backend, Endpoint, GraphContents, TopicInfo
 from jacaros.robots.ros.drivers.rosbridge.actions import BridgeActionClient, BridgeActionServer
-from jacaros.robots.ros.drivers.rosbridge.link import checked_url
 from jacaros.robots.ros.drivers.rosbridge.node import BridgeNode
 from jacaros.robots.ros.drivers.rosbridge.services import (
     BridgeClient,
@@ -25,11 +23,9 @@ from jacaros.robots.ros.drivers.rosbridge.topics import BridgePublisher, BridgeS
 from jacaros.robots.ros.errors import CallFailed, CapabilityMissing, ServiceError
 from jacaros.robots.ros.names import action_type, message_type, service_type
 from jacaros.robots.ros.node import Capability, NodeSettings, Parts
+from jacaros.robots.ros.open import GraphAddress
 from jacaros.robots.ros.parameter_services import NODE_SERVICES, ParameterEvents, read_value
 from jacaros.robots.ros.protocols.rosbridge_wire import PATIENCE
-
-DEFAULT_URL = "ws://127.0.0.1:9090"
-
 
 _ACTIONLIB = ("goal", "cancel", "feedback", "result", "status")
 _LOGS = ("/rosout", "/rosout_agg", "/parameter_events")
@@ -146,7 +142,7 @@ class RosbridgeBackend(BridgeNode):
                 f"parameter {next(iter(settings.parameters))} cannot be set: over rosbridge there is no node of our own, "
                 "and so there are no parameters"
             )
-        super().__init__(settings, checked_url(url or os.environ.get("ROSBRIDGE_URI") or DEFAULT_URL))
+        super().__init__(settings, url or GraphAddress("rosbridge").identity)
         self._parameter_events = ParameterEvents(self.subscription, read_value)
 
     @property

@@ -17,14 +17,12 @@ import time
 from collections import deque
 from collections.abc import Callable
 from typing import Any, cast
-from urllib.parse import urlsplit
 
 import cbor2
 from websockets.exceptions import WebSocketException
 
 from jacaros.robots.ros.handoff import post
 from jacaros.robots.ros.protocols.rosbridge_wire import Wire, address
-from jacaros.runtime.errors import UsageError
 
 FIRST_PAUSE, LONGEST_PAUSE, GROWTH = 0.25, 2.0, 1.7
 """Seconds between two attempts to connect: the first, the maximum, and the factor between them."""
@@ -368,21 +366,3 @@ class RosbridgeLink:
         finally:
             if not connection.is_open:
                 connection.drop()
-
-
-def checked_url(url: str) -> str:
-    """Return the address of a server with its port, 9090 by default.
-
-    Raises:
-        UsageError: the address is invalid.
-    """
-    try:
-        parts = urlsplit(url)
-        port = parts.port
-    except ValueError:
-        port, parts = None, urlsplit("")
-    if parts.scheme not in ("ws", "wss") or not parts.hostname or parts.fragment:
-        raise UsageError(
-            f"expected the address of a rosbridge server, such as ws://robot.lab.example:9090, found {url!r}"
-        )
-    return url if port is not None else f"{parts.scheme}://{parts.netloc}:9090{parts.path}"
