@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from jacaros.artifacts.env.artifact import Out, internal_operation, operation
 from jacaros.robots.artifacts.odometry import Odometer, Odometry
-from jacaros.robots.kit.options import not_negative, number, one_of, positive, text, yes_or_no
+from jacaros.robots.kit.options import number, one_of, positive, text
 from jacaros.robots.kit.reading import Reading, Stamps
 from jacaros.robots.map.cells import Cell, LabelledCells, OccupancyCells
 from jacaros.robots.map.map_files import OccupancyGrid
@@ -59,11 +59,7 @@ class ArtMap(PosedMap):
         radius(R): clearance of the robot, in metres (0.25): routes keep the centres of cells farther than this from
             those of obstacles. A robot with a radius of 0.17 m keeps a few centimetres away from them.
         leg(M): maximum length of a leg of `getLeg`, in metres (1).
-        view(R): show obstacles up to R metres from the robot as ``pos2d(obstacle, X, Y)``, whenever the robot enters
-            another cell; 0 (default): only `getVisionRange` shows them.
         robots(Names): show other robots on the same map by their ``/NAME/amcl_pose``.
-        things(true): show recognised things from ``/jason/perception``, in the form of `ArtPerception`: the texts are
-            name, metres ahead, and metres to the left. A thing stays where it was last seen.
         scan_topic(T), odometry_topic(T), map_topic(T), amcl_topic(T): other topics.
 
     Properties:
@@ -79,9 +75,7 @@ class ArtMap(PosedMap):
         "max_range": positive,
         "laser": mount,
         "leg": positive,
-        "view": not_negative,
         "robots": names,
-        "things": yes_or_no,
         "scan_topic": text,
         "odometry_topic": text,
         "map_topic": text,
@@ -121,8 +115,6 @@ class ArtMap(PosedMap):
         Odometer(self, self.option("odometry_topic", "odom"), self._take_odometry)
         if pose_from == "amcl":
             self.subscription(self.option("amcl_topic", "amcl_pose"), AMCL_POSE, self._take_pose, LATCHED)
-        if self.option("things", False):
-            self.subscription("jason/perception", "perception_msgs/msg/perception", self._take_things)
         others: tuple[str, ...] = self.option("robots", ())
         for name in others:
             take = partial(self._take_other, name)
@@ -162,19 +154,6 @@ class ArtMap(PosedMap):
         pose = Pose.of(sample.message.pose.pose)
         self.start(self.update_object, name, *self._seen.cell_at(pose.x, pose.y), cause=sample.cause)
 
-    def _take_things(self, sample: Sample) -> None:
-        pose = self.mapper.localisation.pose
-        if pose is None:
-            return
-        for recognised in sample.message.perception:
-            name, *place = str(recognised).split(",")
-            try:
-                ahead, left = float(place[0]), float(place[1])
-                cell = self._seen.cell_at(*pose.point(ahead, left))
-            except (ValueError, IndexError, OverflowError):
-                continue  # a text in another format
-            self.start(self.update_object, name.strip(), *cell, cause=sample.cause)
-
     def _locate(self, sample: Sample) -> None:
         """Update the robot's position; if it has entered another cell, update the properties."""
         pose = self.mapper.localisation.pose
@@ -187,14 +166,11 @@ class ArtMap(PosedMap):
 
     @internal_operation
     def show_surroundings(self) -> None:
-        """Show the robot's cell, and the obstacles in view."""
+        """Show the robot's cell."""
         self._showing = False
         pose = self.mapper.localisation.pose
         if pose is not None:
             self.stand(self._seen.cell_at(pose.x, pose.y), math.degrees(pose.yaw), 0.0)
-        view = math.floor(self.option("view", 0.0) / self.size)
-        if view:
-            self.show_obstacles(self._seen.near(self.here, view))
 
     # ---- destinations
 
