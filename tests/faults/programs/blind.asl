@@ -12,6 +12,6 @@
      .print("driven");
      !drive(N - 1).
 
-+odom(X, Y)[frame(F)] <- .print("odom ", X, " ", F).
--odom(_, _) : not odom(_, _) <- .print("odom unknown").
++odom(X, Y, F) <- .print("odom ", X, " ", F).
+-odom(_, _, _) : not odom(_, _, _) <- .print("odom unknown").
 +bad_message(Topic, Why) <- .print("bad ", Topic, " ", Why).

@@ -476,12 +476,10 @@ class ValueRow:
     Attributes:
         key: identifies an element; None if there is one row.
         values: in the order of the fields.
-        annotations: annotations of the belief.
     """
 
     key: object
     values: tuple[object, ...]
-    annotations: tuple[object, ...] = ()
 
 
 FRAME = read_path("header.frame_id")
@@ -539,13 +537,10 @@ class _Maker:
         root = self.element or self.message
         fields = tried(part.place, problems, fields_of, part, root, self.interfaces) or ()
         takes = [take for field in fields if (take := self._reader(field)) is not None]
-        notes = [
-            (field.name, take) for field in part.annotations if (take := self._reader(field)) is not None
-        ]
         if part.each is None:
-            return _single(takes, notes)
+            return _single(takes)
         field = part.key or (fields[0] if fields else None)
-        return _several(getter(part.each), takes, notes, self._reader(field) if field is not None else None)
+        return _several(getter(part.each), takes, self._reader(field) if field is not None else None)
 
     def _element(self) -> FieldType:
         each = self.part.each
@@ -566,20 +561,16 @@ class _Maker:
         return tried(field.place, self.problems, reader, field, self.message, self.element, self.interfaces)
 
 
-def _single(takes: list[Read], notes: list[tuple[str, Read]]) -> Extract:
-    def rows(message: Any) -> list[ValueRow]:
-        return [ValueRow(None, _row_values(takes, message, message, 0), _noted(notes, message, message, 0))]
-
-    return rows
+def _single(takes: list[Read]) -> Extract:
+    return lambda message: [ValueRow(None, _row_values(takes, message, message, 0))]
 
 
-def _several(get: Getter, takes: list[Read], notes: list[tuple[str, Read]], key: Read | None) -> Extract:
+def _several(get: Getter, takes: list[Read], key: Read | None) -> Extract:
     def rows(message: Any) -> list[ValueRow]:
         found = []
         for place, element in enumerate(get(message, 0)):
             named = _hashable(key(message, element, place)) if key else place
-            values = _row_values(takes, message, element, place)
-            found.append(ValueRow(named, values, _noted(notes, message, element, place)))
+            found.append(ValueRow(named, _row_values(takes, message, element, place)))
         return found
 
     return rows
@@ -589,12 +580,6 @@ def _row_values(takes: list[Read], message: Any, element: Any, place: int) -> tu
     if len(takes) == 1:
         return takes[0](message, element, place)
     return tuple([value for take in takes for value in take(message, element, place)])
-
-
-def _noted(notes: list[tuple[str, Read]], message: Any, element: Any, place: int) -> tuple[object, ...]:
-    if not notes:
-        return ()
-    return tuple([Structure(name, tuple(take(message, element, place))) for name, take in notes])
 
 
 def _hashable(key: tuple[object, ...]) -> object:

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterable
 
-from jacaros.artifacts.env.values import Structure
 from jacaros.robots.mapping.decoding import converted
 from jacaros.robots.mapping.fields import FieldPart
 from jacaros.robots.mapping.host import MappingHost
@@ -27,7 +26,6 @@ class FrameUpdater:
         self._target, self._source = host.frame(part.target), host.frame(part.source)
         self._reading = host.reading_of(part.name, part.policy)
         self._values = values_of(part.fields)
-        self._notes = [(note.name, note.path.text, converted(note.conversion)) for note in part.annotations]
         self._taps = host.taps.get(part.name, ())
         self._reported = -1.0
         self._began = host.clock.elapsed
@@ -48,10 +46,6 @@ class FrameUpdater:
         if oldest is not None and 0.0 < transform.stamp < self._host.clock.now() - oldest:
             self._withdraw()
             return
-        self._host.annotate(
-            self._part.name,
-            tuple(Structure(name, (convert(_part(transform, what)),)) for name, what, convert in self._notes),
-        )
         values = self._values(transform)
         self._reading.take(values)
         if self._taps and (transform.stamp != self._reported or not transform.stamp):

@@ -39,8 +39,6 @@ class MappingHost(RosArtifact):
         self.readings: dict[str, Reading] = {}
         self.taps: dict[str, list[Tap]] = {}
         self._reported: set[object] = set()
-        self._notes: dict[str, tuple[object, ...]] = {}
-        self._show_values = self._show_noted
 
     @property
     def robot_prefix(self) -> str:
@@ -70,19 +68,6 @@ class MappingHost(RosArtifact):
         """Return the reading of a property, also for operations that refresh it."""
         made = self.readings[name] = self.reading(name, policy)
         return made
-
-    def annotate(self, name: str, notes: tuple[object, ...]) -> None:
-        """Set the annotations that the property *name* gets when it is shown next."""
-        if notes or name in self._notes:
-            self._notes[name] = notes
-
-    def _show_noted(self, name: str, values: Values) -> None:
-        """Show values with the annotations of their property."""
-        notes = self._notes.get(name)
-        if self.has_property(name):
-            self.update_property(name, *values, annotations=notes)
-        else:
-            self.define_property(name, *values, annotations=notes)
 
     @internal_operation
     def show_property(self, name: str, show: object) -> None:

@@ -186,7 +186,6 @@ class Updater:
         self._take_rows(rows, cause)
 
     def _show(self, reading: Reading, rows: list[ValueRow], cause: Cause | None) -> None:
-        self._host.annotate(self.part.name, rows[0].annotations)
         reading.take(rows[0].values, cause)
 
     def withdraw(self) -> None:
@@ -304,9 +303,9 @@ class Elements:
         for key, row in self._shown.items():
             old = before.get(key)
             if old is None:
-                host.define_property(name, *row.values, annotations=row.annotations)
+                host.define_property(name, *row.values)
             elif old != row:
-                host.update_property(name, *row.values, annotations=row.annotations, where=old.values)
+                host.update_property(name, *row.values, where=old.values)
 
     def _alive(self, now: float, expire: float) -> dict[object, ValueRow]:
         alive = {

@@ -83,11 +83,6 @@ def read_qos(node: YamlNode) -> QoS:
     return replace(DEFAULT_QOS, **given)
 
 
-def read_annotations(node: YamlNode) -> tuple[FieldPart, ...]:
-    """Read annotations by name; the name of the annotation is that of the field."""
-    return tuple(replace(read_field(value), name=belief_name(name)) for name, value in node.entries())
-
-
 ALWAYS = ReadingPolicy()
 """Every change is published."""
 
@@ -115,7 +110,6 @@ class TopicPart:
     each: Annotated[FieldPath | None, entry(path_of)] = None
     each_place: FilePosition = START
     key: Annotated[FieldPart | None, entry(read_field)] = None
-    annotations: Annotated[tuple[FieldPart, ...], entry(read_annotations)] = ()
     qos: Annotated[QoS | None, entry(read_qos)] = None
     description: Annotated[str, entry(YamlNode.text)] = ""
     policy: ReadingPolicy = ALWAYS
@@ -123,11 +117,11 @@ class TopicPart:
     signal: bool = False
 
 
-_MESSAGE = ("topic", "type", "frame", "fields", "each", "key", "annotations", "qos", "description")
+_MESSAGE = ("topic", "type", "frame", "fields", "each", "key", "qos", "description")
 _POLICY = ("mode", "rate", "dead_band", "latest_only", "expire")
 PROPERTY = (*_MESSAGE, *_POLICY)
 SIGNAL = (*_MESSAGE, "rate", "when_changed")
-FEEDBACK = ("fields", "annotations", "description", "rate", "dead_band", "latest_only")
+FEEDBACK = ("fields", "description", "rate", "dead_band", "latest_only")
 
 
 def read_property(name: YamlNode, node: YamlNode) -> TopicPart:
@@ -144,8 +138,6 @@ def read_property(name: YamlNode, node: YamlNode) -> TopicPart:
 def read_signal(name: YamlNode, node: YamlNode) -> TopicPart:
     """Read one signal."""
     part, entries = _from_topic(name, node, SIGNAL, "a signal")
-    if "annotations" in entries:
-        entries["annotations"].wrong("signals have no annotations", "write the field in `fields`")
     policy = read_policy(entries, part.fields, latest_only=False) if entries else ALWAYS
     return replace(part, policy=policy, signal=True)
 
@@ -257,14 +249,13 @@ class FramePart:
     target: Annotated[str, entry(YamlNode.text)] = ""
     source: Annotated[str, entry(YamlNode.text)] = ""
     fields: Annotated[tuple[FieldPart, ...], entry(read_fields)] = ()
-    annotations: Annotated[tuple[FieldPart, ...], entry(read_annotations)] = ()
     description: Annotated[str, entry(YamlNode.text)] = ""
     rate: float = 10.0
     oldest: float | None = None
     policy: ReadingPolicy = ALWAYS
 
 
-FRAME = ("target", "source", "fields", "annotations", "description", *_POLICY)
+FRAME = ("target", "source", "fields", "description", *_POLICY)
 
 
 def read_frame(name: YamlNode, node: YamlNode) -> FramePart:
@@ -273,7 +264,7 @@ def read_frame(name: YamlNode, node: YamlNode) -> FramePart:
     place = place_of(name)
     pose = tuple(FieldPart(read_path(each), place, name=each) for each in ("x", "y", "yaw"))
     part = with_entries(FramePart(belief_name(name), place, fields=pose), entries)
-    for field in (*part.fields, *part.annotations):
+    for field in part.fields:
         node.problems += _of_transform(field)
     for key in ("target", "source"):
         if key in entries and entries[key].value == "":

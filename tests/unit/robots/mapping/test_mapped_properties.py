@@ -114,27 +114,6 @@ async def test_one_subscription_serves_all_properties_of_a_topic(lab: Lab) -> No
     assert t.publishers[f"p {POINT}"].subscription_count == 1
 
 
-ANNOTATED = f"""
-properties:
-  a:
-    topic: p
-    type: {POINT}Stamped
-    fields: [point.x]
-    annotations: {{frame: header.frame_id, at: {{path: header.stamp}}}}
-"""
-
-
-async def test_annotations_of_the_belief(lab: Lab) -> None:
-    t = await talk(lab, ANNOTATED)
-    header = {"frame_id": "map", "stamp": 3.5}
-    await t.say("p", f"{POINT}Stamped", point={"x": 1}, header=header)
-    [added] = t.watcher.observations[-1].added
-    assert added.annotations == (Structure("frame", ("map",)), Structure("at", (3.5,)))
-    await t.say("p", f"{POINT}Stamped", point={"x": 2}, header={**header, "stamp": 4})
-    [(_, now)] = t.watcher.observations[-1].changed
-    assert now.annotations[1] == Structure("at", (4.0,))
-
-
 async def test_a_number_that_is_not_finite_is_logged_once_with_the_line(lab: Lab) -> None:
     t = await talk(lab, points(""))
     await t.points(1, math.nan, math.nan)
