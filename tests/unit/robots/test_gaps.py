@@ -7,7 +7,7 @@ from robot_lab import STANDSTILL, Lab, Watcher, assert_at, made
 
 from jacaros.artifacts import ArtifactId
 from jacaros.artifacts.env.values import Structure
-from jacaros.robots.artifacts.motion import GUARD_TRIPPED
+from jacaros.robots.artifacts.driving import GUARD_TRIPPED
 from jacaros.robots.artifacts.velocity import ArtCmdVel
 from jacaros.robots.ros.drivers.memory.graph import delayed, dropped
 from jacaros.robots.ros.guarded import guarded_by

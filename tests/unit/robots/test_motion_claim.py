@@ -3,7 +3,7 @@
 import asyncio
 
 from jacaros.artifacts.env.values import Structure
-from jacaros.robots.artifacts.motion import MotionClaim, Motions, motions_of
+from jacaros.robots.artifacts.driving import MotionClaim, Motions, motions_of
 from jacaros.robots.ros.open import open_backend
 from jacaros.robots.ros.ros_clock import RosClock
 from jacaros.runtime.clock import VirtualClock, run

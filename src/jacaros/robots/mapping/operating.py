@@ -11,7 +11,7 @@ from typing import Any
 from jacaros.artifacts.env.arbiter import WHEELS
 from jacaros.artifacts.env.artifact import Out
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.robots.artifacts.motion import Aborted, Driving, Motions, motions_of
+from jacaros.robots.artifacts.driving import Aborted, Driving, Motions, motions_of
 from jacaros.robots.kit.acting import error_code, error_text, missing_number
 from jacaros.robots.kit.connection import Matching
 from jacaros.robots.kit.services import failure_reason, refusal, set_parameter

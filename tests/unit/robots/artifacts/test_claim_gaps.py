@@ -5,7 +5,7 @@ import asyncio
 import pytest
 
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.robots.artifacts.motion import MotionClaim
+from jacaros.robots.artifacts.driving import MotionClaim
 from jacaros.runtime.clock import VirtualClock, run
 
 

@@ -7,7 +7,7 @@ from mapped_lab import mapped, settle
 from robot_lab import STANDSTILL, Lab, Run, made
 
 from jacaros.artifacts import ArtifactId, Atom, Out, Structure
-from jacaros.robots.artifacts.motion import motions_of
+from jacaros.robots.artifacts.driving import motions_of
 from jacaros.robots.mapping.file import MappingError, read_mapping
 from jacaros.robots.ros.guarded import guarded_by
 from jacaros.robots.ros.parameter import DeclaredParameter
