@@ -23,11 +23,11 @@ class Shift(Artifact):
 
     @operation
     async def take_over(self) -> None:
-        """Acquire the robot; waits until it is free."""
+        """Acquire the robot; waits until it is free, or has it already."""
         who = Atom(self.caller)
         self.define_property("wanted_by", who)
         try:
-            await self.until(lambda: self.value("on_duty") == "nobody")
+            await self.until(lambda: self.value("on_duty") in ("nobody", who))
         finally:
             self.remove_property("wanted_by", who)
         self.update_property("on_duty", who)

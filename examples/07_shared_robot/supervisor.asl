@@ -1,5 +1,7 @@
 // The supervisor lets the driver patrol, takes the robot when the battery is low, and ends the shift.
 
+{ include("$jacaros/help.asl") }
+
 /* What the agent knows */
 
 dock(1, 1).  // x and y in metres
@@ -11,7 +13,7 @@ recharges(0).
 
 +diagnostics("Low Battery") : battery(Percent)
   <- .print("I want the robot: ", Percent, " % left, enough to reach the dock");
-     !recharge.
+     !recharge[retry(6, 1000)].  // a minute: what is in the way may go
 
 +!recharge : dock(X, Y) & recharges(N)
   <- take_over;  // the plan waits here until the driver has released the robot
@@ -27,7 +29,7 @@ recharges(0).
 
 +visits(Corners) : rounds(N) & Corners == 4 * N
   <- .print("I want the robot: the shift is over");
-     !finish.
+     !finish[retry(6, 1000)].
 
 +!finish : home(X, Y) & rounds(N) & recharges(R)
   <- take_over;
@@ -35,14 +37,12 @@ recharges(0).
      .print("the robot is at home: ", N, " rounds, ", R, " recharges");
      .stopMAS.
 
-/* Failures: the robot missed the dock, or its path was blocked */
+/* Failures: the robot missed the dock, or its path is blocked; a person helps, or the run ends with exit status 1 */
 
 -!recharge[error_msg(Text)]
-  <- !give_up(Text).
+  <- !help_or_stop(Text);
+     !recharge.
 
 -!finish[error_msg(Text)]
-  <- !give_up(Text).
-
-+!give_up(Text)
-  <- .print("I need help: ", Text);
-     .stopMAS(0, 1).  // the exit status reports the failure
+  <- !help_or_stop(Text);
+     !finish.

@@ -1,6 +1,7 @@
 // The robot: drives to the rooms it is sent to, loads and unloads there, and recharges when its battery is low.
 
 { include("$jacaros/artifacts.asl") }
+{ include("$jacaros/help.asl") }
 
 /* What the agent knows */
 
@@ -8,7 +9,7 @@ place(hallway, 0, 0).  // name, x and y in metres
 place(living_room, 2, 0).
 place(kitchen, 2, 2).
 place(bathroom, 0, 2).
-dock(1, 1).
+place(dock, 1, 1).
 at(hallway).
 recharges(0).
 
@@ -23,12 +24,13 @@ recharges(0).
 // Needs the wheels until all parcels are unloaded and loaded.
 @visit[needs(wheels)]
 +!visit(Room)[source(Sender)]
-  <- -+bound(Room);  // where to return after a recharge
-     ?place(Room, X, Y);
-     driveTo(X, Y);
+  <- -+bound(Room);                 // where to return after a recharge
+     !drive(Room)[retry(6, 1000)];  // for a minute: what is in the way may go
      !exchange(Room);
      -+at(Room);
      .send(Sender, tell, visited(Room)).
+
++!drive(Place) : place(Place, X, Y) <- driveTo(X, Y).
 
 +!exchange(Room)
   <- for (aboard(Number, Room)) {
@@ -52,22 +54,20 @@ recharges(0).
      .print("battery full");
      !return.
 
-+!recharge : dock(X, Y) & recharges(N)
-  <- driveTo(X, Y);
++!recharge : recharges(N)
+  <- !drive(dock)[retry(6, 1000)];
      operationRecharge;
      -+recharges(N + 1).
 
-+!return : bound(Room) & place(Room, X, Y) <- driveTo(X, Y).
++!return : bound(Room) <- !drive(Room)[retry(6, 1000)].
 +!return.
 
-/* Failures: the robot missed the dock, or its path was blocked */
+/* Failures: something stays in the way, or the robot missed the dock; a person helps, or the run ends with exit status 1 */
+
+-!drive(Place)[error_msg(Text)]
+  <- !help_or_stop(Text);
+     !drive(Place).
 
 -!recharge[error_msg(Text)]
-  <- !give_up(Text).
-
--!visit(_)[error_msg(Text)]
-  <- !give_up(Text).
-
-+!give_up(Text)
-  <- .print("I need help: ", Text);
-     .stopMAS(0, 1).  // the exit status reports the failure
+  <- !help_or_stop(Text);
+     !recharge.

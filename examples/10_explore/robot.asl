@@ -1,6 +1,7 @@
 // Explores an unknown flat, then uses the map it made to drive to its goal and back home.
 
 { include("$jacaros/artifacts.asl") }
+{ include("$jacaros/help.asl") }
 
 /* What the agent knows */
 
@@ -8,7 +9,7 @@ goal_at(5.6, 4.1).           // metres east and north of where the robot starts
 cell_size(0.1).              // metres
 map_file("runs/flat.yaml").  // file to save the map to
 
-!start.
+!start[retry(6, 1000)].  // for a minute: what is in the way may go, or there may be a way round it
 
 +!start : map_file(File)
   <- !use_artifact("wheels", "ArtCmdVelMuxAndOdometry");
@@ -19,10 +20,10 @@ map_file("runs/flat.yaml").  // file to save the map to
      !go_to(home);
      .stopMAS.
 
-// Failure: no path exists, or the robot cannot drive.
+// Failure: no path exists, or the robot cannot drive.  A person helps, or the run ends with exit status 1.
 -!start[error_msg(Text)]
-  <- .print("I need help: ", Text);
-     .stopMAS(0, 1).
+  <- !help_or_stop(Text);
+     !start[retry(6, 1000)].
 
 // The robot starts in cell 0, 0.
 +!use_map : goal_at(X, Y) & cell_size(Size)

@@ -14,12 +14,6 @@ place(front(waste_closet), -2.7, -1.5, 180).
 place(front(waste_room), -0.9, -1.5, 180).
 place(front(charging_room), 0.9, -1.5, 0).
 
-door(cold_closet).
-door(dry_closet).
-door(waste_closet).
-door(waste_room).
-door(charging_room).
-
 behind(cold_closet, cold_closet).
 behind(dry_closet, dry_closet).
 behind(waste_closet, waste_closet).

@@ -10,6 +10,7 @@
 
 +!drive_out_of_dock <- leave_dock.
 
+{ include("$jacaros/artifacts.asl") }
 { include("$jacaros/navigation.asl") }
 { include("building.asl") }
 
@@ -25,26 +26,25 @@ open(Door) :- is_open(true)[artifact_name(Door)].
      !serve;
      .stopMAS.
 
+// What is done already is not done again.
 -!start[error_msg(Text)]
-  <- .print("I need help: ", Text);
-     .stopMAS(0, 1).  // the exit code tells that it went wrong
+  <- !help_or_stop(Text);
+     .abolish(searched(_));
+     !start.
 
 +!perceive
-  <- makeArtifact(eyes, "ArtPerception", [split(true)], Eyes);
-     focus(Eyes);
-     for (door(Door)) {
+  <- !use_artifact(operator, "Operator");
+     !use_artifact(eyes, "ArtPerception", [split(true)]);
+     for (behind(_, Door)) {
         .concat("doors/", Door, Name);
-        makeArtifact(Door, "../door.yaml", [Name], Id);
-        focus(Id)
+        !use_artifact(Door, "../door.yaml", [Name])
      };
      .wait(pose(_, _, _)).
 
 /* Places and doors */
 
-+!be_at(Place) : battery_low & not recharging
-  <- +recharging;
-     !dock_and_charge;
-     -recharging;
++!be_at(Place) : battery_low & not .desire(dock_and_charge)
+  <- !dock_and_charge;
      !be_at(Place).
 
 +!be_at(Place) : behind(Place, Door) & not open(Door)
@@ -68,12 +68,16 @@ open(Door) :- is_open(true)[artifact_name(Door)].
 
 /* Things */
 
++!bring(Thing, Place) : at(Thing, Place).
 +!bring(Thing, Place)
   <- !fetch(Thing);
      !be_at(Place);
      !attempt(release, 1);
+     -at(Thing, gripper);
+     +at(Thing, Place);
      .print("the ", Thing, " is in its place: ", Place).
 
++!fetch(Thing) : at(Thing, gripper).
 +!fetch(Thing) : at(Thing, Place)
   <- !be_at(Place);
      !attempt(take(Taken), 1);
@@ -82,6 +86,8 @@ open(Door) :- is_open(true)[artifact_name(Door)].
         .print("no ", Thing, " at the ", Place);
         !attempt(release, 1);
         !fetch(Thing)
+     } else {
+        +at(Thing, gripper)
      }.
 
 +!fetch(Thing) : may_hold(Closet) & not searched(Closet)

@@ -9,12 +9,15 @@ from types import ModuleType
 import pytest
 from examples_lab import falsified, world_with
 
+from jacaros.artifacts import Session
 from jacaros.robots.world import GroundTruth
+from jacaros.runtime.mas.system import System
 from jacaros.testing import RunResult, Verdict, run_project
 
 FOLDER = Path(__file__).parents[2] / "experiment" / "workshop"
 WORLD, FAILURES = FOLDER / "building.yaml", FOLDER / "failures.yaml"
 TEA = "  - {name: tea, x: -3.7, y: 0.6, color: green}\n"
+JAMMED = "faults:\n  jammed: {{kind: stuck_door, door: cold_closet, at: 0{}}}\n"
 LONGEST = 1500.0
 """Seconds of the virtual clock; the longest run takes 260."""
 
@@ -110,7 +113,9 @@ def test_a_thing_is_looked_for_where_it_is_not_believed_to_be(tmp_path: Path) ->
 @pytest.mark.slow
 def test_a_thing_that_is_nowhere_is_reported(tmp_path: Path) -> None:
     result = run("1_fetch", world=world_with(tmp_path, WORLD, TEA, ""))
-    assert result.of("robot") == ["no tea at the shelf", "I need help: the tea is nowhere"]
+    missed, asked = result.of("robot")
+    assert missed == "no tea at the shelf"
+    assert asked.startswith("question 1: I am stuck: the tea is nowhere. I believe: ")
     assert result.exit_code == 1
     assert check("1_fetch", result.ground_truth).complaints == ["the tea is not in the counter"]
 
@@ -118,12 +123,25 @@ def test_a_thing_that_is_nowhere_is_reported(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_a_door_that_stays_closed_is_reported(tmp_path: Path) -> None:
     faults = tmp_path / "faults.yaml"
-    faults.write_text("faults:\n  jammed: {kind: stuck_door, door: cold_closet, at: 0}\n", encoding="utf-8")
+    faults.write_text(JAMMED.format(""), encoding="utf-8")
     result = run("3_search", faults=faults)
     (line,) = result.of("robot")
-    assert line.startswith("I need help: ")
+    assert line.startswith("question 1: I am stuck: ")
     assert "the door 'cold_closet' is stuck" in line
     assert result.exit_code == 1
+
+
+@pytest.mark.slow
+def test_a_door_that_a_person_has_mended_is_gone_through(tmp_path: Path) -> None:
+    def person_comes(mas: System) -> None:
+        person = Session(mas.environment, "person")
+        mas.clock.call_later(150.0, lambda: person.begin("answer", 1, "retry", artifact="operator"))
+
+    project, faults = FOLDER / "3_search" / "search.jcm", JAMMED.format(", for: 140")
+    result = run_project(project, faults=faults, seconds=LONGEST, when_started=person_comes)
+    assert result.of("robot")[0].startswith("question 1: I am stuck: ")
+    assert check("3_search", result.ground_truth).complaints == []
+    assert result.exit_code == 0
 
 
 @pytest.mark.slow

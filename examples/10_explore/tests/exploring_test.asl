@@ -28,10 +28,10 @@
   <- !fakes;
      !fake_action(updateSlamData(_, _, _));
      !fake_action(getFrontier(_, _), failed(no_map, "the laser is broken"));
-     !fake_action(.stopMAS);
+     !fake_action(.stopMAS(_, _));
      +ready;
-     !start;
-     !assert_printed("I need help: the laser is broken");
+     !assert_fail(start);
+     !assert_printed("I am stuck: the laser is broken");
      !assert_did(.stopMAS(0, 1)).
 
 @turns_and_drives_as_the_map_says[test]

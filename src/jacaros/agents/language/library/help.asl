@@ -34,8 +34,9 @@ would_help(unreachable(_), "clear the way").
 +!help_or_stop(Reason)
   <- !help(Reason).
 
--!help_or_stop(_)
-  <- .stopMAS(0, 1).
+-!help_or_stop(_)[error(Error), error_msg(Text)]
+  <- .stopMAS(0, 1);
+     .fail(error(Error), error_msg(Text)).
 
 +!take_advice(_, retry).
 
