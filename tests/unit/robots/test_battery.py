@@ -1,4 +1,4 @@
-"""ArtSimBattery: the thesis's timer, and a robot's own battery."""
+"""ArtSimBattery: the thesis's timer, and a robot's own battery, with odd options and odd drivers."""
 
 import math
 from types import SimpleNamespace
@@ -11,7 +11,6 @@ from jacaros.artifacts import ArtifactId, Out, Structure
 from jacaros.look.page.graph_scene import SeenRobot
 from jacaros.robots.artifacts.battery import ArtSimBattery, diagnosis
 from jacaros.robots.artifacts.velocity import ArtCmdVelMuxAndOdometry
-from jacaros.robots.ros.backend import Backend
 
 FULL, MEDIUM, LOW = "Full Battery", "Medium Battery", "Low Battery"
 
@@ -20,6 +19,19 @@ def option(name: str, value: Any) -> Structure:
     return Structure(name, (value,))
 
 
+def charge(lab: Lab, topic: str = "/battery_state") -> Any:
+    """Return a function that publishes a charge and a status."""
+    publisher = lab.backend.publisher(topic, "sensor_msgs/msg/BatteryState")
+
+    def publish(share: float, status: str = "UNKNOWN") -> None:
+        message = publisher.message(percentage=share)
+        message.power_supply_status = getattr(message, f"POWER_SUPPLY_STATUS_{status}")
+        publisher.publish(message)
+
+    return publish
+
+
+OWN = option("source", "robot")
 pytestmark = made(ArtSimBattery, "bot")
 
 
@@ -119,7 +131,7 @@ robots: [{name: turtlebot, battery: {level: 22, drain_per_second: 0.3, charge_pe
 
 
 @pytest.mark.world(WITH_DOCK)
-@made(ArtSimBattery, option("source", "robot"))
+@made(ArtSimBattery, OWN)
 async def test_a_robots_battery_is_shown_charges_in_the_dock_and_is_waited_for(
     lab: Lab, artifact: ArtifactId, watcher: Watcher
 ) -> None:
@@ -147,7 +159,7 @@ async def test_a_robots_battery_is_shown_charges_in_the_dock_and_is_waited_for(
 
 async def test_a_recharge_that_loses_the_dock_fails(lab: Lab) -> None:
     battery = await lab.make(ArtSimBattery, "bot", option("dock_timeout", 2))
-    publisher = charge(lab.backend, "/bot/battery_state")
+    publisher = charge(lab, "/bot/battery_state")
     publisher(0.3, "CHARGING")
     charging = await lab.begun(1, battery, "operationRecharge")
     publisher(0.4, "CHARGING")
@@ -161,7 +173,7 @@ async def test_a_recharge_that_loses_the_dock_fails(lab: Lab) -> None:
 
 async def test_a_driver_that_knows_no_status_is_understood_by_its_rising_charge(lab: Lab) -> None:
     battery = await lab.make(ArtSimBattery, "bot", option("dock_timeout", 2))
-    publish = charge(lab.backend, "/bot/battery_state")
+    publish = charge(lab, "/bot/battery_state")
     publish(0.9, "UNKNOWN")
     charging = lab.begin(battery, "operationRecharge")
     for percent in range(91, 101):
@@ -176,7 +188,7 @@ async def test_a_driver_that_knows_no_status_is_understood_by_its_rising_charge(
 async def test_a_battery_is_full_though_its_driver_charges_for_ever_or_its_charge_stops_rising(
     lab: Lab, artifact: ArtifactId, share: float, status: str
 ) -> None:
-    charge(lab.backend, "/bot/battery_state")(share, status)
+    charge(lab, "/bot/battery_state")(share, status)
     await lab.do(artifact, "operationRecharge")
     assert lab.clock.elapsed < 7
 
@@ -186,7 +198,7 @@ async def test_a_battery_that_is_almost_full_is_not_full(lab: Lab, status: str) 
     """Rounding must not end a charge early."""
     battery = await lab.make(ArtSimBattery, "bot")
     watcher = lab.watch(battery)
-    publish = charge(lab.backend, "/bot/battery_state")
+    publish = charge(lab, "/bot/battery_state")
     publish(0.994, status)
     charging = lab.begin(battery, "operationRecharge")
     for tenth in range(995, 1000):
@@ -200,57 +212,30 @@ async def test_a_battery_that_is_almost_full_is_not_full(lab: Lab, status: str) 
     assert watcher.holds("battery") == [(100,)]
 
 
-def charge(backend: Backend, topic: str) -> Any:
-    publisher = backend.publisher(topic, "sensor_msgs/msg/BatteryState")
-
-    def publish(share: float, status: str) -> None:
-        message = publisher.message(percentage=share)
-        message.power_supply_status = getattr(message, f"POWER_SUPPLY_STATUS_{status}")
-        publisher.publish(message)
-
-    return publish
-
-
-async def test_a_battery_of_unknown_charge_is_not_shown(lab: Lab) -> None:
+async def test_a_battery_of_unknown_charge_is_not_shown_and_does_not_hide_a_known_one(lab: Lab) -> None:
     battery = await lab.make(ArtSimBattery, option("topic", "power"))
     watcher = lab.watch(battery)
-    publish = charge(lab.backend, "/power")
-    publish(float("nan"), "DISCHARGING")
+    publish = charge(lab, "/power")
+    publish(math.nan, "DISCHARGING")
     await lab.sleep(0.1)
     assert watcher.held == {}
     assert (await lab.call(battery, "getCurrentBattery", Out())).reason == "no_battery(5)"
-    publish(0.504, "DISCHARGING")
-    await lab.sleep(0.1)
-    assert watcher.holds("battery") == [(50,)]
+    for share in (0.504, math.nan):
+        publish(share, "DISCHARGING")
+        await lab.sleep(0.1)
+        assert watcher.holds("battery") == [(50,)]
     assert watcher.holds("diagnostics") == [(MEDIUM,)]
 
 
-ROBOT = (ArtSimBattery, option("source", "robot"))
-
-
-async def told(lab: Lab, *shares: float) -> None:
-    """Let the driver report some charges."""
-    tell = charge(lab.backend, "/battery_state")
-    for share in shares:
-        tell(share, "DISCHARGING")
-        await lab.sleep(0.1)
-
-
-@made(*ROBOT)
+@made(ArtSimBattery, OWN)
 async def test_an_impossible_charge_is_reported_and_not_shown(lab: Lab, watcher: Watcher) -> None:
-    await told(lab, 0.5, -1.0, -0.01, 0.4)
+    tell = charge(lab)
+    for share in (0.5, -1.0, -0.01, 0.4):
+        tell(share)
+        await lab.sleep(0.1)
     assert watcher.values("battery") == [(50,), (40,)]
     [(name, why)] = watcher.signals
     assert (name, *map(str, why)) == ("bad_message", "/battery_state", 'out_of_range("percentage")')
-
-
-@made(*ROBOT)
-async def test_a_driver_that_counts_in_percent_is_understood(lab: Lab, watcher: Watcher) -> None:
-    await told(lab, 98.2, 55.0, 19.6, 1.0)
-    assert watcher.values("battery") == [(98,), (55,), (19,), (1,)]
-    assert watcher.values("diagnostics")[-1] == (LOW,)
-    assert len(lab.logged) == 1
-    assert "assuming percent" in lab.logged[0]
 
 
 async def test_the_levels_of_the_diagnoses_are_options(lab: Lab) -> None:
@@ -272,7 +257,7 @@ async def test_agent_and_page_read_the_charge_of_a_driver_alike(lab: Lab) -> Non
     seen = SeenRobot("r")
     publisher = lab.backend.publisher("/battery_state", "sensor_msgs/msg/BatteryState")
     lab.backend.subscription("/battery_state", "sensor_msgs/msg/BatteryState", seen.hear_battery)
-    watcher = lab.watch(await lab.make(ArtSimBattery, option("source", "robot")))
+    watcher = lab.watch(await lab.make(ArtSimBattery, OWN))
     pose = SimpleNamespace(
         position=SimpleNamespace(x=0.0, y=0.0, z=0.0), orientation=SimpleNamespace(x=0.0, y=0.0, z=0.0, w=1.0)
     )
@@ -282,3 +267,127 @@ async def test_agent_and_page_read_the_charge_of_a_driver_alike(lab: Lab) -> Non
         await lab.sleep(1.0)
         assert watcher.holds("battery") == [(percent,)]
         assert math.floor(seen.view(lab.backend).battery) == percent
+
+
+@pytest.mark.parametrize(("level", "shown"), [(150, 100), (-5, 0), (42.4, 42), (0.6, 1)])
+async def test_the_level_at_the_start_is_a_whole_percentage(lab: Lab, level: float, shown: int) -> None:
+    watcher = lab.watch(await lab.make(ArtSimBattery, option("level", level), option("drain", 0)))
+    assert watcher.holds("battery") == [(shown,)]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "topic"),
+    [
+        (("bot",), "/bot/battery_state"),
+        ((option("namespace", "bot"),), "/bot/battery_state"),
+        ((option("topic", "power"),), "/power"),
+        ((OWN,), "/battery_state"),
+    ],
+)
+async def test_a_robots_battery_is_followed_if_anything_names_the_robot(
+    lab: Lab, arguments: Any, topic: str
+) -> None:
+    watcher = lab.watch(await lab.make(ArtSimBattery, *arguments))
+    assert watcher.holds("battery") == []
+    charge(lab, topic)(0.5)
+    await lab.sleep(2.5)
+    assert watcher.holds("battery") == [(50,)]
+
+
+async def test_a_timer_can_be_asked_for_whatever_the_robot_is_named(lab: Lab) -> None:
+    watcher = lab.watch(await lab.make(ArtSimBattery, "bot", option("source", "timer")))
+    charge(lab, "/bot/battery_state")(0.5)
+    await lab.sleep(1.5)
+    assert watcher.values("battery") == [(100,), (99,)]
+
+
+@made(ArtSimBattery, OWN)
+@pytest.mark.parametrize(
+    ("shares", "shown", "lines"),
+    [
+        ((0.28997, 0.29, 0.2899999999, 0.999), [28, 29, 99], 0),  # not 100 before it is full
+        ((1.4, 0.8), [100, 80], 0),
+        ((1.6, 1.2, 98.2, 19.6, 1.0), [1, 98, 19, 1], 1),
+    ],
+    ids=[
+        "rounded down but for the loss of its 32 bits",
+        "a little above one",
+        "once in percent, always in percent",
+    ],
+)
+async def test_charges_of_drivers(
+    lab: Lab, watcher: Watcher, shares: tuple[float, ...], shown: list[int], lines: int
+) -> None:
+    publish = charge(lab)
+    for share in shares:
+        publish(share)
+        await lab.sleep(0.1)
+    assert watcher.values("battery") == [(each,) for each in shown]
+    assert ["assuming percent" in line for line in lab.logged] == [True] * lines
+
+
+async def test_a_charge_that_expires_is_unknown_until_the_next_message(lab: Lab) -> None:
+    watcher = lab.watch(await lab.make(ArtSimBattery, OWN, option("expire", 2.0)))
+    publish = charge(lab)
+    publish(0.6)
+    await lab.sleep(1.5)
+    assert watcher.holds("battery") == [(60,)]
+    await lab.sleep(1.0)
+    assert watcher.holds("battery") == []
+    assert watcher.holds("diagnostics") == []
+    publish(0.6)
+    await lab.sleep(0.1)
+    assert watcher.holds("battery") == [(60,)]
+    assert watcher.holds("diagnostics") == [("Full Battery",)]
+
+
+@made(ArtSimBattery, OWN)
+async def test_a_full_battery_off_the_dock_needs_no_charge(lab: Lab, artifact: ArtifactId) -> None:
+    charge(lab)(1.0, "NOT_CHARGING")
+    await lab.sleep(0.1)
+    before = lab.clock.elapsed
+    await lab.do(artifact, "operationRecharge")
+    assert lab.clock.elapsed == before
+
+
+@pytest.mark.parametrize(("arguments", "seconds"), [((), 5.0), ((option("dock_timeout", 2.0),), 2.0)])
+async def test_a_recharge_off_the_dock_fails_after_the_timeout(
+    lab: Lab, arguments: Any, seconds: float
+) -> None:
+    battery = await lab.make(ArtSimBattery, OWN, *arguments)
+    charge(lab)(0.5, "DISCHARGING")
+    await lab.sleep(20)
+    before = lab.clock.elapsed
+    failed = await lab.call(battery, "operationRecharge")
+    assert failed.reason == "not_docked"
+    assert seconds <= lab.clock.elapsed - before <= seconds + 0.5
+
+
+async def test_a_charge_that_has_stopped_rising_just_below_full_is_complete_after_the_timeout(
+    lab: Lab,
+) -> None:
+    battery = await lab.make(ArtSimBattery, OWN, option("dock_timeout", 3.0))
+    publish = charge(lab)
+    publish(0.996, "CHARGING")
+    await lab.sleep(0.1)
+    charging = await lab.begun(2.0, battery, "operationRecharge")
+    publish(0.997, "CHARGING")  # it rises: the wait begins again
+    await lab.sleep(2.0)
+    assert not charging.done.done()
+    publish(0.997, "CHARGING")
+    await charging.done
+    assert charging.reason == "None"
+    assert 5.0 <= lab.clock.elapsed <= 6.0
+
+
+async def test_a_charge_that_stops_rising_well_below_full_is_not_complete(lab: Lab) -> None:
+    battery = await lab.make(ArtSimBattery, OWN, option("dock_timeout", 3.0))
+    publish = charge(lab)
+    charging = lab.begin(battery, "operationRecharge")
+    for _ in range(10):
+        publish(0.99, "CHARGING")
+        await lab.sleep(1.0)
+    assert not charging.done.done()
+    publish(0.99, "DISCHARGING")
+    await charging.done
+    assert charging.reason == "not_docked"

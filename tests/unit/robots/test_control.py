@@ -116,16 +116,6 @@ def test_a_turn_stops_within_a_degree_whatever_the_latency(late: int, degrees: f
     assert math.degrees(base.pose.yaw) == pytest.approx(degrees, abs=1)
 
 
-@pytest.mark.parametrize("late", [0, 2, 6])
-@pytest.mark.parametrize("stuck", [Velocity(0.019, 0.049), Velocity(0.05, 0.43), Velocity(0.08, 0.7)])
-def test_a_motion_ends_although_wheels_stick_below_a_speed(late: int, stuck: Velocity) -> None:
-    base = Base(late, stuck)
-    base.follow(Straight(1.0))
-    base.follow(Turn(2.0))
-    assert base.pose.x == pytest.approx(1, abs=0.01)
-    assert math.degrees(base.pose.yaw) == pytest.approx(math.degrees(2), abs=1.5)
-
-
 def furthest(base: Base, maneuver: Maneuver) -> float:
     """Drive a maneuver to its end; the greatest x on the way."""
     reached = 0.0
@@ -154,11 +144,6 @@ def test_the_delay_is_measured_from_commands_and_odometry(late: int) -> None:
 
 def test_a_robot_whose_delay_is_unknown_does_not_overshoot_a_short_way() -> None:
     assert furthest(Base(12), Straight(0.1)) < 0.12
-
-
-def test_a_drive_takes_hardly_longer_than_the_ramps_allow() -> None:
-    ideal = 2 / 0.65 + 0.65 / 0.8
-    assert Base(1).follow(Straight(2.0)) < ideal + 1.2
 
 
 @pytest.mark.parametrize("goal", [(2, 1), (-1, 0.2), (0.03, 0.03), (0, -2)])

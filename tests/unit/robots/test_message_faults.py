@@ -194,18 +194,6 @@ async def test_a_scan_without_a_range_and_a_battery_without_a_number_are_reporte
     ]
 
 
-@made(ArtSimBattery, Structure("source", (Atom("robot"),)), Structure("expire", (3,)))
-async def test_a_silent_battery_is_unknown(lab: Lab, watcher: Watcher) -> None:
-    lab.say("/battery_state", BATTERY, percentage=0.8)
-    await lab.sleep(2.9)
-    assert watcher.holds("battery") == [(80,)]
-    await lab.sleep(0.2)
-    assert watcher.holds("battery") == watcher.holds("diagnostics") == []
-    lab.say("/battery_state", BATTERY, percentage=0.8)
-    await lab.sleep(0.1)
-    assert watcher.holds("battery") == [(80,)]
-
-
 # Motion.
 
 

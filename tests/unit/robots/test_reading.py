@@ -85,20 +85,6 @@ def test_not_a_number_equals_itself() -> None:
     assert [math.isnan(values[0]) for _, values in passed] == [True, False, True]  # type: ignore[arg-type]
 
 
-def test_a_closed_reading_passes_nothing_more() -> None:
-    probe = Passed(ReadingPolicy(rate=1))
-
-    async def main() -> None:
-        probe.reading.take((1,))
-        probe.reading.take((2,))
-        probe.reading.close()
-        probe.reading.take((3,))
-        await probe.clock.sleep(5)
-
-    run(main, probe.clock)
-    assert probe.log == [(0, (1,))]
-
-
 def test_waiting_for_the_first_message_ends_with_it_or_with_the_time() -> None:
     probe = Passed(ReadingPolicy())
 

@@ -85,11 +85,13 @@ async def test_a_held_value_is_dropped_when_it_returns_to_the_previous_one(lab: 
     assert slow.log == [(0, (1,)), (1, (2,))]
 
 
-async def test_a_closed_reading_lets_nothing_pass_that_waits(lab: Lab) -> None:
-    slow = Slow(lab, latest_only=True, expire=1.0)
+@pytest.mark.parametrize("policy", [{"latest_only": True, "expire": 1.0}, {"rate": 1.0}])
+async def test_a_closed_reading_lets_nothing_pass_that_waits_or_comes(lab: Lab, policy: Any) -> None:
+    slow = Slow(lab, **policy)
     slow.take((1,))
     slow.take((2,))
     slow.close()
+    slow.take((3,))
     slow.is_behind = False
     await lab.sleep(3)
     assert slow.log == [(0, (1,))]

@@ -8,15 +8,13 @@ from navigator import Navigator, failed
 from robot_lab import Lab
 
 from jacaros.artifacts import Out, Structure
-from jacaros.robots.kit.reading import LONGEST_WAIT, BadMessages, Reading, Stamps
 from jacaros.robots.map.cells import HIT, OBSTACLE, OccupancyCells
 from jacaros.robots.map.mapper import Localisation
 from jacaros.robots.mapping.decoding import converted
 from jacaros.robots.mapping.fields import Conversion, LinearConversion, conversion
 from jacaros.robots.mapping.file import read_mapping
 from jacaros.robots.plane.pose import Pose
-from jacaros.robots.streams import ReadingPolicy, Values
-from jacaros.runtime.clock import VirtualClock, run
+from jacaros.robots.streams import ReadingPolicy
 
 
 def test_a_number_that_appears_or_disappears_differs_whatever_the_dead_band_is() -> None:
@@ -25,50 +23,6 @@ def test_a_number_that_appears_or_disappears_differs_whatever_the_dead_band_is()
     assert policy.differ((math.nan,), (1.0,))
     assert not policy.differ((1.0,), (2.0,))
     assert not policy.differ((float("nan"),), (float("nan"),))
-
-
-def test_values_that_are_confirmed_in_time_do_not_expire() -> None:
-    clock = VirtualClock()
-    withdrawn: list[float] = []
-    delivered: list[float] = []
-
-    async def main() -> None:
-        reading = Reading(
-            ReadingPolicy(expire=1.0),
-            clock,
-            lambda values, cause: delivered.append(clock.elapsed),
-            on_withdraw=lambda: withdrawn.append(round(clock.elapsed, 6)),
-        )
-        for _ in range(8):
-            reading.take((1.0,))
-            await clock.sleep(0.6)
-        assert withdrawn == []
-        await clock.sleep(5.0)
-        reading.close()
-
-    run(main, clock)
-    assert withdrawn == [pytest.approx(7 * 0.6 + 1.0)]
-    assert len(delivered) == 1
-
-
-def test_an_observer_that_never_takes_a_value_up_gets_the_newest_after_the_longest_wait() -> None:
-    clock = VirtualClock()
-    delivered: list[tuple[float, Values]] = []
-
-    async def main() -> None:
-        reading = Reading(
-            ReadingPolicy(latest_only=True),
-            clock,
-            lambda values, cause: delivered.append((round(clock.elapsed, 1), values)),
-            behind=lambda: True,
-        )
-        for count in range(30):
-            reading.take((count,))
-            await clock.sleep(0.1)
-        reading.close()
-
-    run(main, clock)
-    assert [moment for moment, _ in delivered] == pytest.approx([LONGEST_WAIT, 2 * LONGEST_WAIT], abs=0.25)
 
 
 async def test_the_time_that_a_server_takes_to_accept_counts_towards_the_timeout(lab: Lab) -> None:
@@ -98,17 +52,6 @@ def test_operations_may_share_the_name_of_their_feedback_but_not_that_of_a_prope
     read_mapping(both)
     with pytest.raises(Exception, match="has the same name as the property"):
         read_mapping(f"properties: {{left: {{topic: t}}}}\n{both}")
-
-
-def test_messages_with_equal_stamps_are_not_taken_for_late_ones() -> None:
-    clock = VirtualClock()
-    told: list[str] = []
-    stamps = Stamps(BadMessages("/t", lambda why, text: told.append(text)), clock)
-    assert stamps.accept(1000.0, 0.0)
-    clock.elapsed = 5.0
-    assert stamps.accept(1000.0, 0.0), "such as a latched message that is repeated"
-    assert stamps.late == 0.0
-    assert told == []
 
 
 def test_a_clock_that_was_set_back_begins_a_new_history_of_odometry() -> None:

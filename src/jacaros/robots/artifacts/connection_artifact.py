@@ -113,18 +113,6 @@ class ArtRos(RosArtifact):
         topics.set([Structure("topic", (name, info.types[0] if info.types else "")) for name, info in listed])
 
     @operation
-    async def list_services(self, services: Out) -> None:
-        """Give all services, as a list of ``service(Name, Type)``; Type is "" if it is unknown."""
-        services.set(
-            [Structure("service", each) for each in sorted((await self._contents()).services.items())]
-        )
-
-    @operation
-    async def list_actions(self, actions: Out) -> None:
-        """Give all actions, as a list of ``action(Name, Type)``."""
-        actions.set([Structure("action", each) for each in sorted((await self._contents()).actions.items())])
-
-    @operation
     async def list_nodes(self, nodes: Out) -> None:
         """Give the names of all nodes, as a list of texts."""
         nodes.set(list((await self._contents()).nodes))

@@ -6,9 +6,8 @@ Kind, unit and rounding of values come from the definitions of the messages.
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 
-from jacaros.artifacts.env.values import text
 from jacaros.robots.mapping.checking import message_types
-from jacaros.robots.mapping.decoding import fields_of, octet, owner_of
+from jacaros.robots.mapping.decoding import fields_of, owner_of
 from jacaros.robots.mapping.encoding import builder, fitting
 from jacaros.robots.mapping.fields import (
     ANGLES,
@@ -26,7 +25,6 @@ from jacaros.robots.mapping.interfaces import (
     Interfaces,
     chosen,
     constants,
-    constants_by_field,
     follow,
     stored_interfaces,
     unit_at,
@@ -221,8 +219,6 @@ def _of_unit(value: ValuePart) -> str:
     return with_unit("number", UNITS[unit].words, None) if unit else ""
 
 
-_SMALL = ("byte", "char", "int8", "uint8", "int16", "uint16")
-"""Types of integers whose range an ordinary value can exceed."""
 _FEW = 8
 """Number of constants that are listed."""
 
@@ -241,8 +237,7 @@ def word_for_field(
         return ""
     whole = field.shares is not None or field.conversion.kind in ("count", "min", "max", "mean")
     levels = 0 if whole else field.path.lists + leaf.array
-    lists = "list of " * levels if field.path.lists else _list_of(leaf) * levels
-    return lists + word
+    return "list of " * levels + word
 
 
 def word_for_value(part: ValuePart, message: FieldType, interfaces: Interfaces) -> str:
@@ -252,17 +247,9 @@ def word_for_value(part: ValuePart, message: FieldType, interfaces: Interfaces) 
         if part.source is ValueSource.ELEMENTS:
             return _elements(part, FieldType(leaf.base), interfaces)
         word = _converted(part.conversion, part.target, leaf, message, interfaces)
-        if word == "whole number" and leaf.base in _SMALL and part.conversion.line is None:
-            word += " from {} to {}".format(*INTEGER_RANGES[leaf.base])
     except (WrongPath, UnknownInterface):
         return ""
-    return _list_of(leaf) * leaf.array + word
-
-
-def _list_of(leaf: FieldType) -> str:
-    if not leaf.length:
-        return "list of "
-    return f"list ({leaf.length} elements) of " if leaf.fixed else f"list (at most {leaf.length}) of "
+    return "list of " * leaf.array + word
 
 
 def _elements(part: ValuePart, element: FieldType, interfaces: Interfaces) -> str:
@@ -286,20 +273,7 @@ def _converted(
     if kind == "count":
         return "whole number"
     unit = "radians" if kind in ANGLES else words_of(unit_at(path, root, interfaces))
-    word = _kind(leaf.base, conversion, "number" if kind in (*ANGLES, "mean") else "", unit)
-    limited = not kind and not unit and conversion.line is None and not leaf.is_message
-    return word + _limits(path, leaf, root, interfaces) if limited else word
-
-
-def _limits(path: FieldPath, leaf: FieldType, root: FieldType, interfaces: Interfaces) -> str:
-    """Return the limits in the definition: the maximum length of a string, the constants of the field."""
-    longest = f" of at most {leaf.bound} characters" if leaf.bound else ""
-    if path.steps and isinstance(path.steps[-1], str) and path.steps[-1].startswith("."):
-        owner, last = owner_of(path, root, interfaces)
-        if named := constants_by_field(interfaces, owner).get(last):
-            values = [f"{text(octet(value), quoted=True)} = {name}" for name, value in named.items()]
-            return f"{longest} ({_listed(values)})"
-    return longest
+    return _kind(leaf.base, conversion, "number" if kind in (*ANGLES, "mean") else "", unit)
 
 
 def _kind(base: str, conversion: Conversion, kind: str, unit: str) -> str:

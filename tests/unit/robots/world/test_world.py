@@ -116,6 +116,9 @@ def test_a_robot_behind_touches_with_its_back() -> None:
     world = room(pose=Pose(0.0, 0.0, PI))
     drive(world, 4.0, -0.3)
     assert [event.data["side"] for event in world.ground_truth.events_of("bump")] == ["back"]
+    robot = world.robot()
+    assert robot.odometry.x == pytest.approx(robot.x, abs=0.01), "stalled wheels are not counted"
+    assert robot.odometer == pytest.approx(robot.x, abs=0.01)
 
 
 def test_two_robots_push_each_other_apart_and_both_have_an_event() -> None:
@@ -224,14 +227,6 @@ def test_the_error_of_odometry_does_not_depend_on_the_length_of_the_steps(step: 
     errors = [end_of_a_metre(seed, step) for seed in range(150)]
     deviation = math.sqrt(sum(error * error for error in errors) / len(errors))
     assert deviation == pytest.approx(0.05, rel=0.2)
-
-
-def test_a_cleaning_task_is_logged_with_the_true_pose_and_room() -> None:
-    world = World.load("house")
-    world.log_task("turtlebot", "mop floor")
-    [event] = world.ground_truth.events_of("task")
-    assert (event.x, event.y) == (0.0, 0.0)
-    assert event.data == {"task": "mop floor", "room": "hallway"}
 
 
 NOISY = """

@@ -23,24 +23,6 @@ def drive(world: World, seconds: float, speed: float, turn_rate: float = 0.0) ->
         world.run(0.1)
 
 
-@pytest.mark.parametrize("speed", [0.3, -0.3])
-def test_wheels_that_stall_at_a_wall_are_not_counted(speed: float) -> None:
-    world = World.load("bounds: {from: [-1, -1], to: [1, 1]}\nborder: walls\nrobots: [{}]\n")
-    drive(world, 10.0, speed)
-    robot = world.robot()
-    assert abs(robot.x) == pytest.approx(1.0 - RADIUS, abs=1e-6)
-    assert robot.odometry.x == pytest.approx(robot.x, abs=0.01)
-    assert robot.odometer == pytest.approx(abs(robot.x), abs=0.01)
-
-
-def test_a_robot_whose_wheels_are_both_blocked_stays_whatever_the_commands_are() -> None:
-    world = World.load("patrol", faults="faults:\n  f: {kind: blocked_wheel, wheel: both, at: 0}\n")
-    before = world.robot().pose
-    for turn_rate in (0.0, 1.0, -1.0):
-        drive(world, 1.0, 0.3, turn_rate)
-        assert world.robot().pose == before
-
-
 def test_a_robot_that_spins_in_a_dock_is_not_docked_until_it_stands() -> None:
     world = World.load("house")
     world.robot().put_down(world.description.docks[0].pose)
@@ -48,19 +30,6 @@ def test_a_robot_that_spins_in_a_dock_is_not_docked_until_it_stands() -> None:
     assert world.robot().dock is None
     drive(world, 2.0, 0.0)
     assert world.robot().dock is not None
-
-
-def test_a_door_does_not_close_on_a_person() -> None:
-    world = World.load(
-        "size: [6, 6]\n"
-        "doors: [{name: gate, segment: [[1, -0.5], [1, 0.5]], open: true}]\n"
-        "people: [{name: ann, path: [[1, 0]]}]\n"
-        "robots: [{pose: {x: -2, y: 0}}]\n"
-    )
-    assert world.move_door("gate", False) == "ann is in the way"
-    assert world.doors["gate"]
-    world.remove_person("ann")
-    assert world.move_door("gate", False) is None
 
 
 def planner(*walls: Segment) -> Planner:
