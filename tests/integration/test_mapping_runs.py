@@ -109,12 +109,6 @@ def test_a_check_of_a_project_covers_its_mapping_once(folder: Folder) -> None:
     ]
 
 
-def test_a_mapping_that_is_not_there(folder: Folder) -> None:
-    code, lines, errors = folder.call("run", "drive.asl", "--mapping", "robto.yaml")
-    assert (code, lines) == (1, [])
-    assert errors == "error: mapping file not found: robto.yaml\n  = help: did you mean `robot.yaml`?\n"
-
-
 def test_a_faulty_mapping_is_reported_before_anything_runs(folder: Folder) -> None:
     drive = "{publish: cmd_vel, type: geometry_msgs/msg/Twist, fields: {x: 1}}"
     folder.write("robot.yaml", f"operations:\n  drive: {drive}")
@@ -177,20 +171,6 @@ def test_dropping_the_intention_stops_the_robot(folder: Folder) -> None:
         """
     folder.write("drop.asl", text)
     assert folder.call("run", "drop.asl", "--mapping", "robot.yaml") == (0, ["[drop] stands"], "")
-
-
-def test_describe_lists_the_mapping(folder: Folder) -> None:
-    code, lines, _ = folder.call("describe", "robot.yaml")
-    assert code == 0
-    for line in (
-        "robot",
-        "  odom(X, Y)",
-        "  pose(X, Y, Yaw)",
-        "  left(DistanceRemaining)",
-        "  drive(speed: number in metres per second, seconds: number of seconds)  [pausable]",
-        "  navigate_to(x: number in metres, y: number in metres)  [pausable]",
-    ):
-        assert line in lines, line
 
 
 def test_a_type_that_only_the_robot_knows_is_a_warning(folder: Folder) -> None:

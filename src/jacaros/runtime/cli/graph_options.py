@@ -30,27 +30,11 @@ def ros_option(help: str, kinds: Sequence[str] = ROS_KINDS, required: bool = Fal
     return option("--ros", help, RosKind(kinds), envvar="JACAROS_ROS", **settings)
 
 
-class NoiseFactor(click.FloatRange):
-    """Accepts ``off`` (0), ``on`` (1), or a factor."""
-
-    name = "factor"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return the factor."""
-        try:
-            return super().convert({"off": 0.0, "on": 1.0}.get(value, value), param, ctx)  # pyright: ignore[reportArgumentType]
-        except click.BadParameter:
-            raise usage_error(
-                f"invalid value of --noise: expected off, on or a factor up to 100, found `{value}`",
-                "--noise 0.5",
-            ) from None
-
-
 noise_option = option(
     "--noise FACTOR",
-    "Factor for the noise of the embedded world's odometry and lasers: off (0), on (1, that of the world file, or "
-    "that of slipping wheels if it has none) or a number (default: as in the world file; off if no world is named).",
-    NoiseFactor(0.0, 100.0),
+    "Factor for the noise of the embedded world's odometry and lasers: 0 (exact), 1 (that of the world file, or that of "
+    "slipping wheels if it has none) or up to 100 (default: as in the world file; 0 if no world is named).",
+    click.FloatRange(0.0, 100.0),
 )
 
 

@@ -26,21 +26,16 @@ class Runnable(Protocol):
     queued: bool
     """Whether it is in the queue. Set by the scheduler."""
 
+    @property
+    def cycles(self) -> int:
+        """Number of its reasoning cycles so far."""
+
+    @property
+    def is_held(self) -> bool:
+        """Whether it is held before the end of its turn."""
+
     def run(self, fuel: int) -> bool:
         """Run up to *fuel* reasoning cycles. Return whether there is more to do."""
-
-
-class Pauses(Protocol):
-    """What may pause a scheduler in the middle of a turn: keeps the debugger out of it."""
-
-    def cycles(self, agent: Runnable) -> int:
-        """Return the number of reasoning cycles of an agent so far."""
-
-    def is_held(self, agent: Runnable) -> bool:
-        """Return whether an agent is held before the end of its turn."""
-
-    def turn_ended(self, agent: Runnable) -> None:
-        """Note that an agent has used up its turn."""
 
 
 class _Interrupted(NamedTuple):
@@ -71,7 +66,7 @@ class Scheduler:
 
     Attributes:
         paused: whether no agent has a turn.
-        pauses: what may pause in the middle of a turn, or None.
+        turn_ended: called with an agent that has used up its turn, if something may pause in the middle of a turn; or None.
     """
 
     QUANTUM = 50
@@ -106,7 +101,7 @@ class Scheduler:
         self._stopped = False
         self._context = run_context()
         self.paused = False
-        self.pauses: Pauses | None = None
+        self.turn_ended: Callable[[Runnable], None] | None = None
         self._interrupted: _Interrupted | None = None
 
     @property
@@ -234,14 +229,14 @@ class Scheduler:
 
     def _virtual_turns(self) -> int:
         """Give turns until the limit of cycles is reached. Return the number of cycles."""
-        queue, quantum, pauses, cycles = self._queue, self.QUANTUM, self.pauses, 0
+        queue, quantum, cycles = self._queue, self.QUANTUM, 0
         if self._interrupted is not None:
             cycles = self._finish_turn(self._interrupted)
         while queue and cycles < self.CYCLES_PER_ROUND and not self.paused:
             agent = queue.popleft()
             agent.queued = False
-            if pauses is not None:
-                cycles = self._counted_turn(pauses, agent, quantum, cycles)
+            if self.turn_ended is not None:
+                cycles = self._counted_turn(self.turn_ended, agent, quantum, cycles)
             elif agent.run(quantum):
                 cycles += quantum
                 self._requeue(agent)
@@ -251,28 +246,30 @@ class Scheduler:
             self._interrupted = _Interrupted(None, False, 0, cycles)
         return cycles
 
-    def _counted_turn(self, pauses: Pauses, agent: Runnable, fuel: int, cycles: int) -> int:
+    def _counted_turn(
+        self, turn_ended: Callable[[Runnable], None], agent: Runnable, fuel: int, cycles: int
+    ) -> int:
         """Give a turn that a pause may interrupt. Return the cycles of the round, including this turn if it has ended."""
-        before = pauses.cycles(agent)
+        before = agent.cycles
         more = agent.run(fuel)
-        if self.paused and pauses.is_held(agent):
-            left = fuel - (pauses.cycles(agent) - before)
+        if self.paused and agent.is_held:
+            left = fuel - (agent.cycles - before)
             self._interrupted = _Interrupted(agent, agent.queued, left, cycles)
             agent.queued = True  # it gets the rest of its turn in any case
             return cycles
         if more:
             self._requeue(agent)
-        pauses.turn_ended(agent)
+        turn_ended(agent)
         return cycles + (self.QUANTUM if more else 1)
 
     def _finish_turn(self, interrupted: _Interrupted) -> int:
         """Give an agent the rest of its turn. Return the cycles of the round so far."""
         self._interrupted = None
         agent, queued, fuel, cycles = interrupted
-        if agent is None or self.pauses is None:
+        if agent is None or self.turn_ended is None:
             return cycles
         agent.queued = queued
-        return self._counted_turn(self.pauses, agent, fuel, cycles)
+        return self._counted_turn(self.turn_ended, agent, fuel, cycles)
 
     def _requeue(self, agent: Runnable) -> None:
         if not agent.queued and not self._stopped:
@@ -293,8 +290,8 @@ class Scheduler:
                 self._requeue(agent)
             else:
                 cycles += 1
-            if self.pauses is not None:
-                self.pauses.turn_ended(agent)
+            if self.turn_ended is not None:
+                self.turn_ended(agent)
             if cycles >= look or self._poll_soon:
                 before, moment = moment, now()
                 quantum = self._fitting_quantum(moment - before)

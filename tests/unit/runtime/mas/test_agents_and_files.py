@@ -21,10 +21,6 @@ def test_the_directory_knows_who_provides_what(ran: Ran) -> None:
     assert result.lines == ["[a] [a,b]", "[a] [a]", "[a] []", "[a] [a,b,df]"]
 
 
-def test_the_directory_agent_is_created_at_its_first_use(ran: Ran) -> None:
-    assert ran("!go. +!go <- .all_names(N); .print(N).").lines == ["[a] [a]"]
-
-
 def test_subscribers_are_notified_of_present_and_later_providers(ran: Ran) -> None:
     result = ran(
         m_mas2j="MAS m { agents: a; b; c; }",

@@ -47,25 +47,6 @@ def test_an_action_without_environment_fails(ran: Ran) -> None:
     assert result.lines == ["[a] action_failed no_environment"]
 
 
-def test_agents_talk_and_share_a_program(ran: Ran) -> None:
-    result = ran(
-        p_mas2j="MAS p { agents: boss; worker #2; }",
-        boss_asl="!go. +!go <- .broadcast(achieve, work). +done[source(A)] : .count(done[source(_)], 1) <- .print(A).",
-        worker_asl="+!work[source(B)] <- .my_name(N); .print(N); .send(B, tell, done).",
-    )
-    assert result.of("worker1") == ["worker1"]
-    assert result.of("worker2") == ["worker2"]
-    assert result.of("boss")
-
-
-def test_goals_and_beliefs_of_the_project_come_first(ran: Ran) -> None:
-    result = ran(
-        p_mas2j='MAS p { agents: a [beliefs="p(2)", goals="first"]; }',
-        a_asl="p(1). !second. +!first : .findall(X, p(X), L) <- .print(first, L). +!second <- .print(second).",
-    )
-    assert result.lines[0].startswith("[a] first")
-
-
 def test_agents_create_and_kill_agents(ran: Ran) -> None:
     result = ran(
         """!go.

@@ -126,6 +126,16 @@ class AgentHost:
         """The mind; None for a Python agent."""
         return self._mind
 
+    @property
+    def cycles(self) -> int:
+        """Number of reasoning cycles so far; 0 for a Python agent."""
+        return self.mind.counts.cycles if self.mind is not None else 0
+
+    @property
+    def is_held(self) -> bool:
+        """Whether its mind is held in the middle of a cycle, by a debugger."""
+        return self.mind is not None and self.mind.held is not None
+
     def set_mind(self, mind: "Mind") -> None:
         """Set the mind."""
         self._mind = mind

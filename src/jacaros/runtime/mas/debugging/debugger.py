@@ -347,7 +347,7 @@ class Debugger:
 
     def _hook(self) -> None:
         """Observe all agents, including future ones."""
-        self._system.scheduler.pauses = self
+        self._system.scheduler.turn_ended = self.turn_ended
         for mind in self._minds():
             self._observe(mind)
         if not self._watches:
@@ -363,30 +363,16 @@ class Debugger:
         if mind is not None and mind.observers.step is not self:
             observe_steps(mind, self)
 
-    # ---- called by the scheduler, see `jacaros.runtime.mas.scheduler.Pauses`
-
-    def cycles(self, agent: Runnable) -> int:
-        """Return the number of reasoning cycles of an agent so far."""
-        mind = _mind_of(agent)
-        return mind.counts.cycles if mind is not None else 0
-
-    def is_held(self, agent: Runnable) -> bool:
-        """Return whether an agent is held in the middle of a cycle."""
-        mind = _mind_of(agent)
-        return mind is not None and mind.held is not None
+    # ---- called by the scheduler
 
     def turn_ended(self, agent: Runnable) -> None:
         """Evaluate conditions after a turn, too: a percept that no plan handles is followed by no step."""
-        mind = _mind_of(agent)
+        mind = agent.mind if isinstance(agent, AgentHost) else None
         if self.paused or mind is None:
             return
         why = self._met(mind, lambda each: isinstance(each, ConditionBreakpoint) and each.becomes_true(mind))
         if why:
             self._stop(DebugState("paused", why, agent=mind.name))
-
-
-def _mind_of(agent: Runnable) -> Mind | None:
-    return agent.mind if isinstance(agent, AgentHost) else None
 
 
 def command_standstill(ros: RosGraph, options: RunOptions) -> None:

@@ -191,7 +191,7 @@ async def test_a_python_agent_is_paused_too_and_a_real_graph_lists_what_continue
 
 async def test_a_run_without_a_debugger_is_asked_nothing(mas: Mas, debugger: Debugger, lines: list[str]):
     assert debugger.listen(lambda state: None) is not None
-    assert mas.system.scheduler.pauses is None
+    assert mas.system.scheduler.turn_ended is None
     assert mas.agent("bob").mind.observers.step is None
     await mas.until_idle()
     assert not debugger.paused
