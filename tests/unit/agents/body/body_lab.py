@@ -16,7 +16,7 @@ from jacaros.agents.terms.values import (
     make_list,
     structure,
 )
-from jacaros.artifacts.env.artifact import Artifact, Out, link, operation
+from jacaros.artifacts.env.artifact import Artifact, Out, operation
 from jacaros.artifacts.env.environment import Environment
 from jacaros.artifacts.env.errors import UnknownArtifactType
 from jacaros.runtime.clock import VirtualClock, run
@@ -56,25 +56,8 @@ class Counter(Artifact):
             seconds -= 1
 
 
-class Switch(Artifact):
-    """Has an out port."""
-
-    ports = ("out",)
-
-    @operation
-    async def press(self) -> None:
-        await self.call_linked("out", "raise_by", 5)
-
-
 class Lamp(Artifact):
-    """Is linked to switches."""
-
-    def init(self) -> None:
-        self.define_property("power", 0)
-
-    @link
-    def raise_by(self, watts: int) -> None:
-        self.update_property("power", self.value("power") + watts)
+    """Has no operations."""
 
 
 class Total(Artifact):
@@ -85,7 +68,7 @@ class Total(Artifact):
         self.signal("total", sum(values))
 
 
-TYPES = {cls.__name__: cls for cls in (Counter, Switch, Lamp, Total)}
+TYPES = {cls.__name__: cls for cls in (Counter, Lamp, Total)}
 
 
 def find_type(name: str) -> type[Artifact]:

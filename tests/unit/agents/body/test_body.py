@@ -5,27 +5,7 @@ import re
 from body_lab import Robot, action, among_artifacts, detail_of, message_of, reason_of
 
 from jacaros.agents.terms.text import text
-from jacaros.agents.terms.values import NIL, Reference, Term, Var, atom, functor, list_items, structure
-
-
-@among_artifacts
-async def test_outputs_are_given_to_the_variables(one, two, clock):
-    one.make("c", "Counter", 4)
-    count = Var("N")
-    completion = one.do("read", count)
-    assert completion.outputs == ((count, 4.0),)
-
-
-@among_artifacts
-async def test_outputs_changes_and_failures_of_operations_reach_the_mind(one, two, clock):
-    one.do("focus", one.make("c", "Counter"))
-    one.log.clear()
-    one.do("inc")
-    assert one.log == ["signal tick", "remove count(0)", "add count(1)", "done"]
-    failure = one.do("refuse")
-    assert message_of(failure) == "no"
-    assert reason_of(failure) == "refused(3)"
-    assert failure.annotations[1][0] is functor("env_failure_reason", 1)
+from jacaros.agents.terms.values import NIL, Reference, Var, atom, list_items, structure
 
 
 @among_artifacts
@@ -70,14 +50,6 @@ async def test_guards_of_operations_are_awaited_dropped_and_paused(one, two, clo
 
 
 @among_artifacts
-async def test_a_disposed_artifact_fails_the_actions_that_wait_for_it(one, two, clock):
-    c = one.make("c", "Counter")
-    take = one.begin(action("take"))
-    two.do("disposeArtifact", c)
-    assert reason_of(one.completions[take]) == 'artifact_disposed("c")'
-
-
-@among_artifacts
 async def test_a_closed_body_gives_everything_up(one, two, clock):
     one.do("focus", one.make("c", "Counter"))
     take = one.begin(action("take"))
@@ -94,33 +66,10 @@ def count(robot: Robot, **directions: object) -> object:
 
 
 @among_artifacts
-async def test_own_artifacts_come_first_the_oldest_of_them(one, two, clock):
-    two.make("theirs", "Counter", 0)
-    first, second = one.make("first", "Counter", 1), one.make("second", "Counter", 2)
-    one.do("focus", second)
-    assert count(one) == 1.0
-    one.do("disposeArtifact", first)
-    assert count(one) == 2.0
-
-
-@among_artifacts
-async def test_focused_artifacts_come_before_any_other(one, two, clock):
+async def test_an_annotation_directs_the_action_by_any_name(one, two, clock):
     one.make("a", "Counter", 1)
-    b, c = one.make("b", "Counter", 2), one.make("c", "Counter", 3)
-    assert count(two) == 1.0
-    two.do("focus", c)
-    two.do("focus", b)
-    assert count(two) == 3.0
-
-
-@among_artifacts
-async def test_an_annotation_directs_the_action(one, two, clock):
-    one.make("a", "Counter", 1)
-    b = one.make("b", "Counter", 2)
-    assert count(one, artifact_id=b) == count(one, aid=b) == 2.0
-    assert count(one, artifact_name="b") == count(one, art=atom("b")) == 2.0
-    assert count(one, artifact_id="b") == 2.0
-    assert count(one, artifact_name="b", wsp="main") == count(one, art="b", wsp="/main") == 2.0
+    one.make("b", "Counter", 2)
+    assert count(one, art=atom("b")) == count(one, artifact_id="b") == count(one, art="b", wsp="/main") == 2.0
     assert count(one, source=atom("self")) == 1.0
 
 
@@ -146,36 +95,6 @@ async def test_a_directed_action_without_target_fails_with_a_reason(one, two, cl
 
 
 @among_artifacts
-async def test_the_current_workspace_comes_before_home_and_others(one, two, clock):
-    for number, name in enumerate(("lab", "attic"), start=2):
-        one.do("createWorkspace", f"/main/{name}")
-        one.do("joinWorkspace", f"/main/{name}")
-        one.make("c", "Counter", number)
-    one.make("t", "Total")
-    assert count(one) == 3.0
-    one.do("joinWorkspace", "/main")
-    assert count(one) == 2.0
-    two.make("c", "Counter", 1)
-    assert count(one) == 1.0
-    assert "the workspaces /main, /main/lab, /main/attic" in message_of(one.do("jump"))
-
-
-@among_artifacts
-async def test_a_namespace_means_the_artifacts_focused_in_it(one, two, clock):
-    one.make("a", "Counter", 1)
-    b = one.make("b", "Counter", 2)
-    assert one.do("ns::focus", b).success
-    assert one.beliefs == ["ns::count(2)"]
-    assert one.ask("ns::read") == 2.0
-    assert count(one) == 1.0
-    assert one.ask("other::read") == 1.0
-    assert one.do("focus", b).success
-    assert one.do("ns::stopFocus", b).success
-    one.do("inc", artifact_id=b)
-    assert one.beliefs == ["count(3)"]
-
-
-@among_artifacts
 async def test_an_action_for_the_artifacts_of_a_namespace_does_not_go_elsewhere_for_its_number_of_arguments(
     one, two, clock
 ):
@@ -187,13 +106,6 @@ async def test_an_action_for_the_artifacts_of_a_namespace_does_not_go_elsewhere_
     assert "unknown operation `inc/2` of artifact right (Counter); it has inc/" in message_of(failure)
     assert one.do("ns::inc", 1).success
     assert one.do("inc", 1, 2).success
-
-
-@among_artifacts
-async def test_the_id_of_an_artifact_takes_precedence_over_other_annotations(one, two, clock):
-    one.make("a", "Counter", 1)
-    b = one.make("b", "Counter", 2)
-    assert count(one, artifact_id=b, artifact_name="a", wsp="nowhere") == 2.0
 
 
 @among_artifacts
@@ -216,24 +128,27 @@ async def test_an_exact_number_of_arguments_wins_over_any_number(one, two, clock
 
 @among_artifacts
 async def test_ids_of_other_things_are_refused(one, two, clock):
+    c = one.make("c", "Counter")
     assert "expected an artifact" in message_of(one.do("read", Var(), artifact_id=Reference(object())))
+    assert "(lookupArtifact gives the id for a name), found c" in message_of(one.do("focus", atom("c")))
+    for wrong in (atom("c"), "c", 7, Var("X")):
+        assert without_ids(reason_of(one.do("focus", wrong))) == 'wrong_op_arguments(ID,"focus/1")'
+    linked = one.do("linkArtifacts", "c", "out", c)
+    assert without_ids(reason_of(linked)) == 'wrong_op_arguments(ID,"linkArtifacts/3")'
+
+
+@among_artifacts
+async def test_an_action_that_nothing_offers_names_the_joined_workspaces(one, two, clock):
+    one.do("createWorkspace", "lab")
+    one.do("joinWorkspace", "lab")
+    assert "the workspaces /main/lab, /main has" in message_of(one.do("jump"))
+    assert reason_of(one.do("joinWorkspace", "attic")) == 'unknown_workspace("/main/lab/attic")'
 
 
 def without_ids(reason: str | None) -> str:
     """A reason in which ids do not matter."""
     assert reason is not None
     return re.sub(r"cobj_\d+", "ID", reason)
-
-
-@among_artifacts
-async def test_an_artifact_is_made_with_or_without_parameters_and_id(one, two, clock):
-    assert one.do("makeArtifact", "a", "Counter").success
-    assert one.do("makeArtifact", atom("b"), atom("'Counter'"), [7]).success
-    made = one.ask("makeArtifact", "c", "Counter", [])
-    assert isinstance(made, Reference)
-    assert one.ask("lookupArtifact", atom("c")) is made
-    assert one.ask("makeArtifact", "d", "Counter", []) is one.ask("lookupArtifact", "d")
-    assert one.ask("read", artifact_name="b") == 7.0
 
 
 @among_artifacts
@@ -283,60 +198,6 @@ async def test_an_output_that_is_bound_is_a_wrong_argument(one, two, clock):
 
 
 @among_artifacts
-async def test_focusing_shows_the_properties_before_the_action_ends(one, two, clock):
-    c = one.make("c", "Counter", 3)
-    one.log.clear()
-    assert one.do("focus", c).success
-    assert one.log[0] == "add count(3)"
-    assert one.log[1].startswith("add focusing(cobj_")
-    assert one.log[1].endswith('main,"/main")')
-    assert ',c,"Counter",' in one.log[1]
-    assert one.log[2:] == ["done"]
-    assert one.do("focus", c).success
-    assert one.log[3:] == ["done"]
-
-
-@among_artifacts
-async def test_an_artifact_is_focused_by_its_id_only(one, two, clock):
-    c = one.make("c", "Counter")
-    for name in ("focus", "stopFocus"):
-        for wrong in (atom("c"), "c", 7, Var("X")):
-            assert without_ids(reason_of(one.do(name, wrong))) == f'wrong_op_arguments(ID,"{name}/1")'
-    assert "(lookupArtifact gives the id for a name), found c" in message_of(one.do("focus", atom("c")))
-    assert (
-        without_ids(reason_of(one.do("disposeArtifact", "c"))) == 'wrong_op_arguments(ID,"disposeArtifact/1")'
-    )
-    linked = one.do("linkArtifacts", "c", "out", c)
-    assert without_ids(reason_of(linked)) == 'wrong_op_arguments(ID,"linkArtifacts/3")'
-
-
-@among_artifacts
-async def test_the_end_of_the_focus_takes_the_beliefs_away(one, two, clock):
-    c = one.make("c", "Counter")
-    assert one.do("stopFocus", c).success
-    one.do("focus", c)
-    one.do("stopFocus", c)
-    one.do("inc", 1)
-    assert one.beliefs == []
-    assert not any(text(p.literal).startswith("focusing") for p in one.percepts[-1:] if p.kind == "add")
-    one.do("focus", c)
-    assert one.beliefs == ["count(1)"]
-
-
-@among_artifacts
-async def test_a_disposed_artifact_leaves_no_beliefs_in_any_agent(one, two, clock):
-    c = one.make("c", "Counter")
-    one.do("focus", c)
-    two.do("focus", c)
-    assert two.do("disposeArtifact", c).success
-    for robot in (one, two):
-        assert robot.beliefs == []
-        assert [p.kind for p in robot.percepts if text(p.literal).startswith("focusing")] == ["add", "remove"]
-    for name in ("focus", "stopFocus", "disposeArtifact"):
-        assert reason_of(one.do(name, c)) == 'artifact_not_available("c")'
-
-
-@among_artifacts
 async def test_focus_when_available_waits_and_can_be_cancelled(one, two, clock):
     waiting = one.begin(action("focusWhenAvailable", "d"))
     one.body.suspend_act(waiting)
@@ -355,58 +216,6 @@ async def test_focus_when_available_waits_and_can_be_cancelled(one, two, clock):
     assert one.beliefs == ["count(2)"]
     assert one.activity.pending == 0
     assert two.do("focusWhenAvailable", "c").success
-
-
-@among_artifacts
-async def test_linked_artifacts_work_together(one, two, clock):
-    switch, lamp = one.make("s", "Switch"), one.make("l", "Lamp")
-    one.do("focus", lamp)
-    assert reason_of(one.do("linkArtifacts", switch, "in", lamp)) == 'unknown_port("in")'
-    assert one.do("linkArtifacts", switch, "out", lamp).success
-    press = one.begin(action("press"))
-    await clock.sleep(0.1)
-    assert one.completions[press].success
-    assert one.beliefs == ["power(5)"]
-
-
-@among_artifacts
-async def test_workspaces_are_created_joined_and_quit(one, two, clock):
-    one.make("c", "Counter", 1)
-    assert one.do("createWorkspace", "lab").success
-    assert reason_of(one.do("createWorkspace", "lab")) == 'workspace_already_present("/main/lab")'
-    lab = one.ask("joinWorkspace", "lab")
-    inside = one.make("c", "Counter", 100)
-    one.do("focus", inside)
-    assert one.log[-3].startswith("add count(100)")
-    joined = [text(p.literal) for p in one.percepts if "joinedWsp" in text(p.literal)]
-    assert [j.partition(",")[2] for j in joined] == ['main,"/main")', 'lab,"/main/lab")']
-    assert one.ask("read") == 100.0
-    assert one.do("joinWorkspace", "/main").success
-    assert one.ask("read") == 1.0
-    assert one.ask("read", wid=lab) == 100.0
-    assert one.do("quitWorkspace", lab).success
-    assert one.beliefs == []
-    assert one.percepts[-1].kind == "remove"
-    for directed in (one.do("read", Var(), wid=lab), one.do("read", Var(), artifact_id=inside)):
-        assert detail_of(directed) == 'workspace_not_joined("/main/lab")'
-        assert reason_of(directed) == "env_failure(action_failed(read,generic_error))"
-    made = one.do("makeArtifact", "d", "Counter", wid=lab)
-    assert reason_of(made) == "env_failure(action_failed(makeArtifact,generic_error))"
-    assert reason_of(one.do("focus", inside)) == 'workspace_not_joined("/main/lab")'
-    assert reason_of(one.do("quitWorkspace", lab)) == 'workspace_not_joined("/main/lab")'
-    assert reason_of(one.do("joinWorkspace", "attic")) == 'unknown_workspace("/main/attic")'
-
-
-@among_artifacts
-async def test_each_intention_has_a_current_workspace(one, two, clock):
-    one.make("c", "Counter", 1)
-    one.do("createWorkspace", "lab")
-    one.do("joinWorkspace", "lab", intention=1)
-    one.do("makeArtifact", "c", "Counter", [100], intention=1)
-    one.do("joinWorkspace", "/main", intention=2)
-    assert one.ask("read", intention=1) == 100.0
-    assert one.ask("read", intention=2) == 1.0
-    assert one.ask("read", intention=3) == 1.0
 
 
 @among_artifacts
@@ -469,29 +278,6 @@ def annotations(robot: Robot, name: str) -> list[str]:
 
 
 @among_artifacts
-async def test_the_workspace_shows_what_is_in_it(one, two, clock):
-    workspace = one.ask("lookupArtifact", "workspace")
-    one.do("focus", workspace)
-    default = ["blackboard", "console", "manrepo", "system", "workspace"]
-    names = [re.findall(r'ID,"(\w+)"', each)[0] for each in seen(one, "artifact")]
-    assert names == [*default, "session_one", "body_one"]
-    made = two.make("c", "Counter")
-    assert seen(one, "artifact")[-1] == 'artifact(ID,"c","Counter")'
-    two.do("disposeArtifact", made)
-    assert 'artifact(ID,"c","Counter")' not in seen(one, "artifact")
-    two.do("createWorkspace", "lab")
-    two.do("linkWorkspace", "lab", "shortcut")
-    assert seen(one, "childWsp") == ['childWsp("lab")']
-    assert seen(one, "linkedWsp") == ['linkedWsp("shortcut","/main/lab")']
-    assert annotations(one, "childWsp")[1:] == [
-        "artifact_name(workspace)",
-        "percept_type(obs_prop)",
-        "source(percept)",
-        'workspace("/main",ID)',
-    ]
-
-
-@among_artifacts
 async def test_what_an_agent_focuses_is_a_property_of_its_body(one, two, clock):
     c, d = one.make("c", "Counter"), one.make("d", "Counter")
     one.do("focus", c)
@@ -542,24 +328,14 @@ async def test_where_an_agent_is_is_a_property_of_its_session(one, two, clock):
 
 
 @among_artifacts
-async def test_actions_may_be_directed_to_the_default_artifacts(one, two, clock):
+async def test_actions_may_be_directed_to_the_session(one, two, clock):
     one.do("createWorkspace", "lab")
-    one.do("joinWorkspace", "lab")
-    one.do("joinWorkspace", "/main")
-    making = one.begin(action("makeArtifact", "c", "Counter", artifact_name="workspace", wsp="lab"))
-    await clock.sleep(0)
-    assert one.completions[making].success
-    c = one.ask("lookupArtifact", "lab/c")
-    assert c.value.creator == "one"
-    workspace = one.ask("lookupArtifact", "/main/lab/workspace")
-    assert text(one.ask("lookupArtifact", "c", artifact_id=workspace)) == text(c)
-    body = one.ask("lookupArtifact", "/main/lab/body_one")
-    assert one.do("focusWhenAvailable", "c", artifact_id=body).success
-    assert one.beliefs == ["count(0)"]
-    assert one.do("stopFocus", c, artifact_id=body).success
-    assert one.beliefs == []
     session = one.ask("lookupArtifact", "session_one")
     assert one.do("joinWorkspace", "lab", artifact_id=session).success
+    body = one.ask("lookupArtifact", "/main/lab/body_one")
+    one.make("c", "Counter")
+    assert one.do("focusWhenAvailable", "c", artifact_id=body).success
+    assert one.beliefs == ["count(0)"]
     assert one.do("joinWorkspace", "/main", aid=session).success
 
 
@@ -629,25 +405,6 @@ async def test_what_needs_other_processes_says_so(one, two, clock):
 
 
 @among_artifacts
-async def test_quitting_ends_everything_in_a_workspace(one, two, clock):
-    one.do("createWorkspace", "lab")
-    lab = one.ask("joinWorkspace", "lab")
-    inside = one.make("c", "Counter")
-    one.do("focus", inside)
-    assert one.do("quitWorkspace", lab).success
-    assert seen(one, "count") == seen(one, "focusing") == []
-    assert seen(one, "joinedWsp") == ['joinedWsp(ID,main,"/main")']
-    assert detail_of(one.do("inc", artifact_id=inside)) == 'workspace_not_joined("/main/lab")'
-    two.do("joinWorkspace", "lab")
-    two.do("inc", artifact_id=inside)
-    assert seen(one, "count") == []
-    assert not one.do("inc").success
-    assert one.do("joinWorkspace", "lab").success
-    assert one.do("focus", inside).success
-    assert seen(one, "count") == ["count(1)"]
-
-
-@among_artifacts
 async def test_an_agent_that_quit_the_environment_can_join_again(one, two, clock):
     one.do("focus", one.make("c", "Counter"))
     one.do("createWorkspace", "lab")
@@ -669,24 +426,6 @@ async def test_an_agent_that_quit_the_environment_can_join_again(one, two, clock
 
 
 @among_artifacts
-async def test_a_pattern_lets_pass_what_fits_it(one, two, clock):
-    c = one.make("c", "Counter")
-    assert one.do("focus", c, structure("count", 2.0)).success
-    assert two.do("focus", c, term_list(atom("tick"))).success
-    one.log.clear(), two.log.clear()
-    for _ in range(3):
-        one.do("inc")
-    assert [line for line in one.log if line != "done"] == ["add count(2)", "remove count(2)"]
-    assert two.log == ["signal tick"] * 3
-    assert two.beliefs == []
-
-
-def term_list(*items: Term) -> list[Term]:
-    """A list, as `body_lab.term_of` takes it."""
-    return list(items)
-
-
-@among_artifacts
 async def test_patterns_let_pass_what_fits_and_invalid_ones_are_wrong(one, two, clock):
     c = one.make("c", "Counter", 5)
     assert one.do("focus", c, structure("count", Var())).success
@@ -703,16 +442,12 @@ async def test_patterns_let_pass_what_fits_and_invalid_ones_are_wrong(one, two, 
 
 
 @among_artifacts
-async def test_actions_that_wait_can_be_given_a_time(one, two, clock):
-    one.make("c", "Counter")
+async def test_an_action_that_waits_too_long_fails(one, two, clock):
     waiting = one.begin(action("focusWhenAvailable", "late", timeout=500))
-    taking = one.begin(action("take", timeout=200))
     in_time = one.begin(action("focusWhenAvailable", "soon", timeout=500))
-    await clock.sleep(0.3)
-    assert reason_of(one.completions[taking]) == 'operation_timeout("take/0",200)'
     two.make("soon", "Counter")
     assert one.completions[in_time].success
-    await clock.sleep(0.3)
+    await clock.sleep(0.6)
     assert reason_of(one.completions[waiting]) == 'operation_timeout("focusWhenAvailable/1",500)'
     assert message_of(one.completions[waiting]) == "focusWhenAvailable/1 did not end within 500 ms"
     two.make("late", "Counter", 7)
