@@ -54,14 +54,6 @@ async def test_without_arguments_an_artifact_is_made_even_if_its_init_wants_some
     assert stage.lines == []
 
 
-async def test_a_used_name_is_refused_and_the_artifact_stays(stage):
-    counter = await stage.make(Counter, 5)
-    reason, name, _ = await why(stage.make(Counter))
-    assert (reason, name) == ("artifact_already_present", "it")
-    assert stage.main.lookup("it") is counter
-    assert stage.property(counter, "count") == (5,)
-
-
 async def test_an_unknown_type_is_refused_with_a_suggestion(stage):
     types(stage)
     reason, name, message = await why(stage.main.make_artifact("d", "Cuonter"))

@@ -28,18 +28,6 @@ async def test_a_tuple_that_is_not_there_fails_with_its_reason(stage):
     assert do("rdp", "msg", 2, Out()).reason == Atom("no_match")
 
 
-async def test_in_and_rd_wait_for_a_matching_tuple(stage):
-    do = blackboard(stage)
-    reader, taker, other = do("rd", "x", Out()), do("in", "x", Out()), do("in", "y", Out())
-    assert not reader.ok
-    do("out", "x", 1)
-    assert (reader.ok, taker.ok, other.ok) == (True, True, False)
-    assert do("inp", "x", Out()).reason == Atom("no_match")
-    other.execution.cancel()
-    do("out", "y", 2)
-    assert do("rdp", "y", Out()) == [2]
-
-
 async def test_values_are_compared_as_agents_do(stage):
     do = blackboard(stage)
     do("out", "v", True)

@@ -121,13 +121,6 @@ DISPOSED = Structure("artifact_disposed", ("it",))
 GONE = Structure("artifact_not_available", ("it",))
 
 
-async def test_observers_lose_all_properties(stage, it, made):
-    watcher = stage.watch(it)
-    stage.main.dispose_artifact(it)
-    assert watcher.notes == ["+level(0) +mode('idle')", "-level(0) -mode('idle')"]
-    assert made.events == HOOKS
-
-
 async def test_operations_running_or_waiting_fail_with_artifact_disposed(stage, it, made):
     stage.watch(it)
     calls = [stage.call(it, name) for name in ("run", "wait", "run", "hold")]

@@ -82,14 +82,6 @@ async def test_a_step_completes_before_the_operations_that_it_enables(stage, it)
     ]
 
 
-async def test_a_bounded_buffer_loses_nothing(stage, it):
-    takes = [stage.call(it, "take") for _ in range(50)]
-    for _ in range(50):
-        stage.call(it, "fill")
-    assert all(take.ok for take in takes)
-    assert level(stage, it) == 0
-
-
 async def test_a_waiting_request_is_withdrawn_by_cancel_without_an_outcome(stage, it):
     first, second = stage.call(it, "take"), stage.call(it, "take")
     first.execution.cancel()

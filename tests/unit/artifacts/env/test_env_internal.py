@@ -12,19 +12,10 @@ class Clock(Artifact):
         self.define_property("ticks", 0)
         self._pause = pause
 
-    @operation(name="start")
-    def start_ticking(self, most: int):
-        self.update_property("running", "yes")
-        self.start(self.work, most)
-
     @operation(name="startBroken")
     def start_broken(self):
         self.start("work", 3)
         self.fail("changed my mind")
-
-    @operation
-    def stop(self):
-        self.update_property("running", "no")
 
     @internal_operation
     async def work(self, most: int):
@@ -111,15 +102,6 @@ class Clock(Artifact):
 
 
 pytestmark = pytest.mark.makes(it=Clock)
-
-
-async def test_the_artifact_can_be_used_meanwhile(stage, it, watcher):
-    stage.call(it, "start", 1000)
-    await stage.clock.sleep(0.25)
-    assert stage.call(it, "stop").ok
-    watcher.take()
-    await stage.clock.sleep(1.0)
-    assert watcher.take() == ["-running('no') +running('no')"]
 
 
 async def test_a_process_is_not_started_by_a_step_that_fails(stage, it, watcher):

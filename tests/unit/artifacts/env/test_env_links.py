@@ -119,18 +119,6 @@ async def linked(stage):
     return lamp, switch
 
 
-async def test_a_linked_operation_has_outputs_and_its_changes_are_seen_before_the_caller_ends(stage):
-    for artifact in await linked(stage):
-        stage.watch(artifact, artifact.name)
-    stage.story.clear()
-    assert await stage.output(stage.main.lookup("switch"), "press", 5) == 5
-    assert stage.story == [
-        ("lamp", "-power(0) +power(5)"),
-        ("switch", "-presses(0) +presses(1)"),
-        ("press", "ok"),
-    ]
-
-
 async def test_the_chain_runs_on_behalf_of_the_agent_that_started_it(stage):
     _, first = await linked(stage)
     far = await stage.make(Switch, name="far")

@@ -3,7 +3,6 @@
 import pytest
 
 from jacaros.artifacts import (
-    UNSET,
     Artifact,
     Atom,
     InvalidArtifact,
@@ -32,28 +31,6 @@ class Counter(Artifact):
         result.set([type(number).__name__, label])
 
     @operation
-    def divmod(self, a: int, b: int, quotient: Out, remainder: Out):
-        quotient.set(a // b)
-        remainder.set(a % b)
-
-    @operation
-    def unset(self, result: Out):
-        pass
-
-    @operation
-    def refuse(self, functor: str, number: int):
-        self.update_property("count", 99)
-        self.fail("refused", functor, number, "text", True)
-
-    @operation
-    def plain(self):
-        self.fail("plain failure", "plain")
-
-    @operation
-    def jam(self):
-        self.fail("jammed")
-
-    @operation
     def crash(self):
         self.update_property("count", 99)
         self.define_property("extra", 1)
@@ -74,10 +51,6 @@ class Counter(Artifact):
     def greet(self, name: str, greeting: str = "hello", *more: str):
         self.log(" ".join([greeting, name, *more]))
 
-    @operation
-    def who(self, agent: Out):
-        agent.set(self.caller)
-
 
 pytestmark = pytest.mark.makes(it=Counter)
 
@@ -97,17 +70,6 @@ async def test_observers_are_notified_before_the_caller(stage, it):
     stage.story.clear()
     stage.call(it, "inc")
     assert stage.story == [("main", "-count(0) +count(1)"), ("inc", "ok")]
-
-
-async def test_outputs_count_in_the_arity_and_are_set(stage, it):
-    quotient = Out()
-    assert await stage.output(it, "divmod", 17, 5, quotient) == 2
-    assert quotient.value == 3
-    left = Out()
-    assert stage.call(it, "unset", left).ok
-    assert left.value is UNSET
-    assert not left.is_set
-    assert await stage.output(it, "who", agent="bob") == "bob"
 
 
 async def test_an_operation_with_any_number_of_arguments_still_has_a_least_number(stage, it):
@@ -156,24 +118,6 @@ async def test_an_unknown_operation_fails_with_a_suggestion(stage, it, name, arg
     assert call.reason == Structure("unknown_operation", (it, name))
     assert [part for part in parts if part not in call.outcome.message] == []
     assert call.execution.ended
-
-
-async def test_a_failing_operation_has_a_message_and_perhaps_a_reason(stage, it):
-    call = stage.call(it, "refuse", "wrong_key", 3)
-    assert call.outcome.message == "refused"
-    assert call.reason == Structure("wrong_key", (3, "text", True))
-    plain = stage.call(it, "plain").reason
-    assert plain == Atom("plain")
-    assert isinstance(plain, Atom), "a reason without arguments"
-    jam = stage.call(it, "jam")
-    assert (jam.outcome.message, jam.reason) == ("jammed", None)
-
-
-async def test_a_failing_step_is_rolled_back_unobserved(stage, it, watcher):
-    stage.call(it, "refuse", "no", 1)
-    assert watcher.take() == []
-    assert stage.call(it, "inc").ok
-    assert watcher.take() == ["-count(0) +count(1)"]
 
 
 async def test_an_unexpected_error_is_rolled_back_logged_with_its_traceback_and_an_operation_error(

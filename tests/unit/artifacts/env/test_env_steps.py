@@ -70,20 +70,6 @@ class Lane(Artifact):
         raise OSError("gone")
 
     @operation
-    async def late(self):
-        self._append("first")
-        await self.sleep(0.05)
-        self._append("second")
-        self.fail("late", "late", 2)
-
-    @operation
-    async def crash(self):
-        self._append("first")
-        await self.sleep(0.05)
-        self._append("second")
-        raise RuntimeError("boom")
-
-    @operation
     def sleep_in_a_plain_operation(self):
         self.sleep(1.0).send(None)
 
@@ -93,24 +79,12 @@ class Lane(Artifact):
         future.cancel()
         await self.step(future)
 
-    @operation
-    async def at_once(self):
-        self._append("at once")
-
 
 pytestmark = pytest.mark.makes(it=Lane)
 
 
 def trace(stage, lane):
     return stage.property(lane, "trace")[0]
-
-
-async def test_a_pause_publishes_the_changes_so_far(stage, it, watcher):
-    stage.call(it, "run", "a", 2, 0.1)
-    await stage.clock.sleep(0.05)
-    assert watcher.notes[-1] == "-trace([]) +trace(['a1'])"
-    await stage.clock.sleep(0.1)
-    assert watcher.notes[-1] == "-trace(['a1']) +trace(['a1', 'a2'])"
 
 
 async def test_awaiting_without_a_step_boundary_blocks_the_artifact(stage, it, watcher):
@@ -123,14 +97,6 @@ async def test_awaiting_without_a_step_boundary_blocks_the_artifact(stage, it, w
     assert (hold.ended_at, mark.ended_at) == (1.0, 1.0)
     assert trace(stage, it) == ["a begins", "a ends", "x"]
     assert len(watcher.take()) == 2
-
-
-async def test_operations_that_wait_for_the_artifact_are_served_in_their_order(stage, it):
-    stage.call(it, "hold", "a", 1.0)
-    stage.call(it, "mark", "x")
-    stage.call(it, "at_once")
-    await stage.ended(it, "mark", "y")
-    assert trace(stage, it) == ["a begins", "a ends", "x", "at once", "y"]
 
 
 async def test_an_operation_that_resumes_queues_behind_waiting_ones(stage, it):
@@ -177,17 +143,6 @@ async def test_an_error_in_an_awaitable_is_raised_in_the_operation_on_its_turn(s
     call = await stage.ended(it, "awaiting_fails")
     assert call.ok
     assert trace(stage, it) == ["before", "caught"]
-
-
-@pytest.mark.parametrize(
-    ("name", "reason"),
-    [("late", Structure("late", (2,))), ("crash", Structure("operation_error", ("crash/0",)))],
-)
-async def test_only_the_failing_step_is_rolled_back(stage, it, name, reason):
-    call = await stage.ended(it, name)
-    assert call.reason == reason
-    assert trace(stage, it) == ["first"]
-    assert call.ended_at == 0.05
 
 
 async def test_an_agent_that_focuses_in_mid_step_sees_what_is_committed(stage, it):
