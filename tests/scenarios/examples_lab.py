@@ -14,7 +14,7 @@ from jacaros.runtime.mas.deployment import Deployment
 from jacaros.runtime.mas.launch import launch, load_deployment
 from jacaros.runtime.mas.options import RunOptions
 from jacaros.runtime.mas.system import System
-from jacaros.testing import RunResult, run_project
+from jacaros.testing import RunResult, Verdict, run_project
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -50,6 +50,19 @@ def checker(folder: str) -> ModuleType:
 def run_of(project: str) -> RunResult:
     """The run of an example, made once. It must end without warnings."""
     return run(project)
+
+
+def truth_of(project: str) -> GroundTruth:
+    """What truly happened in the run of an example."""
+    truth: GroundTruth = run_of(project).ground_truth
+    return truth
+
+
+def passed(verdict: Verdict) -> Verdict:
+    """Print a verdict and expect no complaints."""
+    print(*verdict.lines(), sep="\n")
+    assert verdict.complaints == []
+    return verdict
 
 
 def unexpected(errors: Sequence[str]) -> list[str]:

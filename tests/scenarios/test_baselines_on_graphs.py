@@ -7,11 +7,7 @@ from pathlib import Path
 import pytest
 from examples_lab import EXAMPLES, checker
 from processes import Program, WorldProcess
-from test_examples_on_graphs import HOUSE, changed, not_on_kilted
-
-from jacaros.robots.world import GroundTruth
-from jacaros.testing import Verdict
-from jacaros.testing.paths import stays
+from test_examples_on_graphs import HOUSE, PATROL_BATTERY, changed, is_back_on_patrol, judge, not_on_kilted
 
 pytestmark = pytest.mark.only("ros2")
 
@@ -43,13 +39,6 @@ def run_baseline(kind: str, environment: dict[str, str]) -> Iterator[RunBaseline
     yield run
     for each in started:
         each.stop()
-
-
-def judge(verdict: Verdict, baseline: Program) -> None:
-    """Expect no complaints of the example's checker and of the baseline."""
-    print(*verdict.lines(), sep="\n")
-    assert verdict.complaints == []
-    assert baseline.complaints == []
 
 
 def test_the_robot_drives_out_and_back(run_world: RunWorld, run_baseline: RunBaseline) -> None:
@@ -87,26 +76,13 @@ def test_the_node_reports_every_state_of_the_robot_s_battery(
 def test_the_patrol_continues_after_a_recharge(
     run_world: RunWorld, run_baseline: RunBaseline, tmp_path: Path
 ) -> None:
-    example = checker("04_patrol")
-
-    def is_back_on_patrol(truth: GroundTruth) -> bool:
-        charged = [stay.begin for stay in stays(truth) if stay.charged]
-        return bool(charged) and example.visits(truth.path())[-1].begin > charged[0]
-
-    # Only motion drains the battery, so a slow machine does not drain it faster.
-    battery = {
-        "level: 100": "level: 27",
-        "drain_per_second: 0.75": "drain_per_second: 0",
-        "drain_per_metre: 3": "drain_per_metre: 6.5",
-        "charge_per_second: 10": "charge_per_second: 40",
-    }
-    world = run_world(changed(tmp_path, EXAMPLES / "04_patrol/patrol.yaml", battery))
+    world = run_world(changed(tmp_path, EXAMPLES / "04_patrol/patrol.yaml", PATROL_BATTERY))
     baseline = run_baseline("patrol")
     baseline.until(lambda: is_back_on_patrol(world.truth), "a corner after a recharge")
     truth = world.close()
     baseline.stop()
     print(*baseline.lines, sep="\n")
-    assert example.check(truth, cycles=1).complaints == []
+    assert checker("04_patrol").check(truth, cycles=1).complaints == []
 
 
 @not_on_kilted

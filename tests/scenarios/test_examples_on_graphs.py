@@ -6,8 +6,8 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import pytest
-from examples_lab import EXAMPLES, checker
-from processes import Agents, WorldProcess
+from examples_lab import EXAMPLES, checker, passed
+from processes import Agents, Program, WorldProcess
 
 import jacaros.robots.world
 from jacaros.robots.world import GroundTruth
@@ -42,11 +42,25 @@ def changed(folder: Path, original: Path, changes: Mapping[str, str]) -> Path:
     return path
 
 
-def judge(verdict: Verdict, agents: Agents) -> None:
-    """Expect no complaints of the example's checker and of the agents."""
-    print(*verdict.lines(), sep="\n")
-    assert verdict.complaints == []
-    assert agents.complaints == []
+def judge(verdict: Verdict, program: Program) -> None:
+    """Expect no complaints of the example's checker and of the program."""
+    passed(verdict)
+    assert program.complaints == []
+
+
+PATROL_BATTERY = {
+    "level: 100": "level: 27",
+    "drain_per_second: 0.75": "drain_per_second: 0",
+    "drain_per_metre: 3": "drain_per_metre: 6.5",
+    "charge_per_second: 10": "charge_per_second: 40",
+}
+"""Only motion drains this battery, so a slow machine does not drain it faster."""
+
+
+def is_back_on_patrol(truth: GroundTruth) -> bool:
+    """Whether the robot has visited a corner after a recharge."""
+    charged = [stay.begin for stay in stays(truth) if stay.charged]
+    return bool(charged) and checker("04_patrol").visits(truth.path())[-1].begin > charged[0]
 
 
 def test_the_robot_drives_out_and_back(run_world: RunWorld, run_agents: RunAgents) -> None:
@@ -87,24 +101,11 @@ def test_the_agent_prints_every_state_of_the_robots_battery(
 def test_the_patrol_continues_after_a_recharge(
     run_world: RunWorld, run_agents: RunAgents, tmp_path: Path
 ) -> None:
-    example = checker("04_patrol")
-
-    def is_back_on_patrol(truth: GroundTruth) -> bool:
-        charged = [stay.begin for stay in stays(truth) if stay.charged]
-        return bool(charged) and example.visits(truth.path())[-1].begin > charged[0]
-
-    # Only motion drains the battery, so a slow machine does not drain it faster.
-    battery = {
-        "level: 100": "level: 27",
-        "drain_per_second: 0.75": "drain_per_second: 0",
-        "drain_per_metre: 3": "drain_per_metre: 6.5",
-        "charge_per_second: 10": "charge_per_second: 40",
-    }
-    world = run_world(changed(tmp_path, EXAMPLES / "04_patrol/patrol.yaml", battery))
+    world = run_world(changed(tmp_path, EXAMPLES / "04_patrol/patrol.yaml", PATROL_BATTERY))
     agents = run_agents(EXAMPLES / "04_patrol/patrol.jcm")
     world.until_truth(is_back_on_patrol, "a corner after a recharge")
     agents.stop()
-    judge(example.check(world.close(), cycles=1), agents)
+    judge(checker("04_patrol").check(world.close(), cycles=1), agents)
     assert [line.split(" at ")[0] for line in world.errors] == ["warning: the battery of `turtlebot` is"]
 
 

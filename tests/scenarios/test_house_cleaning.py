@@ -3,7 +3,19 @@
 from pathlib import Path
 
 import pytest
-from examples_lab import EXAMPLES, LONGEST, checker, doing_at, falsified, run, run_of, spoilt, world_with
+from examples_lab import (
+    EXAMPLES,
+    LONGEST,
+    checker,
+    doing_at,
+    falsified,
+    passed,
+    run,
+    run_of,
+    spoilt,
+    truth_of,
+    world_with,
+)
 
 import jacaros.robots.world
 from jacaros.robots.world import GroundTruth, RobotEvent
@@ -14,16 +26,9 @@ HOUSE = Path(jacaros.robots.world.__file__).parent / "worlds" / "house.yaml"
 check = checker("05_house_cleaning").check
 
 
-def truth_of_example() -> GroundTruth:
-    truth: GroundTruth = run_of(PROJECT).ground_truth
-    return truth
-
-
 def test_every_task_is_done_in_its_room_and_in_order_and_the_house_is_clean() -> None:
-    verdict = check(truth_of_example())
-    print(*verdict.lines(), sep="\n")
-    assert verdict.complaints == []
-    assert truth_of_example().dirt == {
+    passed(check(truth_of(PROJECT)))
+    assert truth_of(PROJECT).dirt == {
         ("living_room", "dust"): 0.0,
         ("kitchen", "stains"): 0.0,
         ("bathroom", "limescale"): 0.0,
@@ -147,7 +152,7 @@ def test_nothing_is_cleaned_between_leaving_for_the_dock_and_the_return(tmp_path
 
 
 def test_the_checker_sees_dirt_that_is_left_or_cleaned_from_afar() -> None:
-    truth = truth_of_example()
+    truth = truth_of(PROJECT)
     false = falsified(
         truth,
         event=lambda e: e if not cleaned(e, "kitchen", "stains") or e.data["percent"] > 2 else None,
@@ -163,7 +168,7 @@ def tasks(truth: GroundTruth) -> list[RobotEvent]:
 
 
 def test_the_checker_sees_a_task_done_in_another_room_or_outside_of_all() -> None:
-    truth = truth_of_example()
+    truth = truth_of(PROJECT)
     wrong = tasks(truth)[2]
     false = falsified(
         truth, event=lambda e: e._replace(data={**e.data, "room": "kitchen"}) if e is wrong else e
@@ -175,7 +180,7 @@ def test_the_checker_sees_a_task_done_in_another_room_or_outside_of_all() -> Non
 
 
 def test_the_checker_sees_tasks_in_the_wrong_order_left_out_or_unwanted() -> None:
-    truth = truth_of_example()
+    truth = truth_of(PROJECT)
     scrub, mop = tasks(truth)[2:4]
 
     def swapped(event: RobotEvent) -> RobotEvent:
@@ -193,16 +198,16 @@ def test_the_checker_sees_tasks_in_the_wrong_order_left_out_or_unwanted() -> Non
 
 def test_the_checker_sees_an_unwanted_task() -> None:
     more = RobotEvent(199.0, "turtlebot", "task", 0, 0, 0, {"task": "mop floor hallway", "room": "hallway"})
-    assert not check(falsified(truth_of_example(), more=[more])).passed
-    assert not check(falsified(truth_of_example(), event=lambda e: e if e.kind != "task" else None)).passed
+    assert not check(falsified(truth_of(PROJECT), more=[more])).passed
+    assert not check(falsified(truth_of(PROJECT), event=lambda e: e if e.kind != "task" else None)).passed
 
 
 def test_the_checker_sees_an_empty_battery() -> None:
     empty = RobotEvent(100.0, "turtlebot", "battery_empty", 0.0, 1.0, 0.0, {"level": 0})
-    assert check(falsified(truth_of_example(), more=[empty])).complaints == ["the battery was empty"]
-    false = falsified(truth_of_example(), event=lambda e: e if e.kind != "charging" else None)
+    assert check(falsified(truth_of(PROJECT), more=[empty])).complaints == ["the battery was empty"]
+    false = falsified(truth_of(PROJECT), event=lambda e: e if e.kind != "charging" else None)
     assert check(false).complaints == ["0 recharges, not 1"]
-    truth = truth_of_example()
+    truth = truth_of(PROJECT)
     second_round = tasks(truth)[4].time
     false = falsified(truth, lambda s: s if s.time > second_round else s._replace(y=s.y + 0.1 * (s.y < 0.5)))
     assert not check(false).passed

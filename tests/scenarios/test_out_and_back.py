@@ -3,7 +3,7 @@
 import math
 import re
 
-from examples_lab import checker, falsified, run, run_of
+from examples_lab import checker, falsified, passed, run, run_of, truth_of
 
 from jacaros.robots.world import RobotEvent
 
@@ -12,9 +12,7 @@ check = checker("01_out_and_back").check
 
 
 def test_the_robot_comes_back_to_where_and_how_it_stood() -> None:
-    verdict = check(run_of(PROJECT).ground_truth)
-    print(*verdict.lines(), sep="\n")
-    assert verdict.complaints == []
+    passed(check(truth_of(PROJECT)))
 
 
 def test_the_agent_prints_what_it_does() -> None:
@@ -32,7 +30,7 @@ def test_the_program_alone_runs_in_the_default_world() -> None:
 
 
 def test_the_checker_sees_an_end_six_centimetres_or_four_degrees_off() -> None:
-    truth = run_of(PROJECT).ground_truth
+    truth = truth_of(PROJECT)
     end = truth.latest().time
     false = falsified(truth, lambda s: s._replace(x=s.x + 0.06) if s.time >= end else s)
     assert not check(false).passed
@@ -41,7 +39,7 @@ def test_the_checker_sees_an_end_six_centimetres_or_four_degrees_off() -> None:
 
 
 def test_the_checker_sees_a_robot_that_never_moved_left_its_line_or_came_back_in_reverse() -> None:
-    truth = run_of(PROJECT).ground_truth
+    truth = truth_of(PROJECT)
     start = truth.path()[0]
     false = falsified(truth, lambda s: start._replace(time=s.time))
     assert len(check(false).complaints) == 2
@@ -51,6 +49,6 @@ def test_the_checker_sees_a_robot_that_never_moved_left_its_line_or_came_back_in
 
 
 def test_the_checker_sees_a_bump() -> None:
-    truth = run_of(PROJECT).ground_truth
+    truth = truth_of(PROJECT)
     bump = RobotEvent(3.0, "turtlebot", "bump", 1.6, 0.0, 0.0, {"side": "front"})
     assert not check(falsified(truth, more=[bump])).passed

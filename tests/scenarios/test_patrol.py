@@ -1,11 +1,23 @@
 """Scenario 4: a patrol with recharging."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from examples_lab import EXAMPLES, checker, doing_at, falsified, run, run_of, spoilt, world_with
+from examples_lab import (
+    EXAMPLES,
+    checker,
+    doing_at,
+    falsified,
+    passed,
+    run,
+    run_of,
+    spoilt,
+    truth_of,
+    world_with,
+)
 
-from jacaros.robots.world import GroundTruth, PathSample, RobotEvent
+from jacaros.robots.world import PathSample, RobotEvent
 from jacaros.testing import run_project
 
 PROJECT = "04_patrol/patrol.jcm"
@@ -13,15 +25,8 @@ module = checker("04_patrol")
 check = module.check
 
 
-def truth_of_example() -> GroundTruth:
-    truth: GroundTruth = run_of(PROJECT).ground_truth
-    return truth
-
-
 def test_ten_recharges_and_no_corner_left_out() -> None:
-    verdict = check(truth_of_example())
-    print(*verdict.lines(), sep="\n")
-    assert verdict.complaints == []
+    verdict = passed(check(truth_of(PROJECT)))
     assert verdict.measured["recharges"] == 10
 
 
@@ -29,7 +34,7 @@ def test_the_lines_of_the_agent_agree_with_what_happened() -> None:
     stops = {line for line in run_of(PROJECT).lines if "battery low" in line}
     assert len(stops) == 4
     lines = run_of(PROJECT).lines
-    verdict = check(truth_of_example())
+    verdict = check(truth_of(PROJECT))
     corners = int(verdict.measured["corners"])
     assert f"[robot] {corners} corners, that is {corners // 4} rounds and {corners % 4} of the next" in lines
     assert sum(line.startswith("[robot] round ") for line in lines) == corners
@@ -104,15 +109,15 @@ def test_the_checker_sees_a_program_that_is_wrong(old: str, new: str, complaint:
 
 
 def test_the_checker_sees_too_few_recharges_a_bump_and_an_empty_battery() -> None:
-    assert check(truth_of_example(), cycles=11).complaints == ["10 recharges, not 11"]
+    assert check(truth_of(PROJECT), cycles=11).complaints == ["10 recharges, not 11"]
     empty = RobotEvent(100.0, "turtlebot", "battery_empty", 0.0, 1.0, 0.0, {"level": 0})
-    assert check(falsified(truth_of_example(), more=[empty])).complaints == ["the battery was empty"]
+    assert check(falsified(truth_of(PROJECT), more=[empty])).complaints == ["the battery was empty"]
     bump = RobotEvent(3.0, "turtlebot", "bump", 1.6, 0.0, 0.0, {"side": "front"})
-    assert not check(falsified(truth_of_example(), more=[bump])).passed
+    assert not check(falsified(truth_of(PROJECT), more=[bump])).passed
 
 
 def test_the_checker_sees_a_corner_left_out_and_the_way_driven_backwards() -> None:
-    truth = truth_of_example()
+    truth = truth_of(PROJECT)
     visit = module.visits(truth.path())[5]
 
     def away(sample: PathSample) -> PathSample:
@@ -121,11 +126,11 @@ def test_the_checker_sees_a_corner_left_out_and_the_way_driven_backwards() -> No
     assert [c.split(" at ")[0] for c in check(falsified(truth, away)).complaints] == [
         "after corner 0 came corner 2"
     ]
-    assert not check(falsified(truth_of_example(), lambda s: s._replace(x=s.y, y=s.x))).passed
+    assert not check(falsified(truth_of(PROJECT), lambda s: s._replace(x=s.y, y=s.x))).passed
 
 
 def test_the_checker_sees_a_patrol_that_continues_at_the_wrong_corner_or_ends_in_the_dock() -> None:
-    truth = truth_of_example()
+    truth = truth_of(PROJECT)
     stay = module.judge_recharging(module.Verdict(), truth)[0]
 
     def swapped(sample: PathSample) -> PathSample:
@@ -134,41 +139,20 @@ def test_the_checker_sees_a_patrol_that_continues_at_the_wrong_corner_or_ends_in
     assert not check(falsified(truth, swapped)).passed
 
 
-def test_the_checker_sees_the_way_driven_backwards() -> None:
-    assert not check(falsified(truth_of_example(), lambda s: s._replace(x=s.y, y=s.x))).passed
-
-
-def test_the_checker_sees_an_empty_battery() -> None:
-    empty = RobotEvent(100.0, "turtlebot", "battery_empty", 0.0, 1.0, 0.0, {"level": 0})
-    assert check(falsified(truth_of_example(), more=[empty])).complaints == ["the battery was empty"]
-
-
-def test_the_checker_sees_charging_outside_of_the_dock() -> None:
-    false = falsified(
-        truth_of_example(), event=lambda e: e._replace(x=e.x + 0.5) if e.kind == "charging" else e
-    )
-    assert not check(false).passed
-
-
-def test_the_checker_sees_a_robot_that_leaves_the_dock_too_early() -> None:
-    false = falsified(truth_of_example(), event=lambda e: e if e.kind != "charged" else None)
-    assert not check(false).passed
-
-
-def test_the_checker_sees_a_robot_that_docks_with_half_a_battery() -> None:
-    def half(event: RobotEvent) -> RobotEvent:
-        return event._replace(data={"level": 50.0}) if event.kind == "charging" else event
-
-    assert not check(falsified(truth_of_example(), event=half)).passed
-
-
 def test_the_checker_sees_a_patrol_that_ends_in_the_dock() -> None:
-    truth = truth_of_example()
+    truth = truth_of(PROJECT)
     last = module.judge_recharging(module.Verdict(), truth)[-1]
     false = falsified(truth, lambda s: s if s.time <= last.begin + 1.0 else None)
     assert "no corner was visited after the last recharge" in check(false).complaints
 
 
-def test_the_checker_sees_a_bump() -> None:
-    bump = RobotEvent(3.0, "turtlebot", "bump", 1.6, 0.0, 0.0, {"side": "front"})
-    assert not check(falsified(truth_of_example(), more=[bump])).passed
+RECHARGES: dict[str, Callable[[RobotEvent], RobotEvent | None]] = {
+    "outside of the dock": lambda e: e._replace(x=e.x + 0.5) if e.kind == "charging" else e,
+    "left too early": lambda e: e if e.kind != "charged" else None,
+    "with half a battery": lambda e: e._replace(data={"level": 50.0}) if e.kind == "charging" else e,
+}
+
+
+@pytest.mark.parametrize("event", RECHARGES.values(), ids=RECHARGES)
+def test_the_checker_sees_a_recharge_that_is_wrong(event: Callable[[RobotEvent], RobotEvent | None]) -> None:
+    assert not check(falsified(truth_of(PROJECT), event=event)).passed

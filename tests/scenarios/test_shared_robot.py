@@ -6,10 +6,10 @@ import sys
 from pathlib import Path
 
 import pytest
-from examples_lab import EXAMPLES, checker, falsified, run, run_of, spoilt, world_with
+from examples_lab import EXAMPLES, checker, falsified, passed, run, run_of, spoilt, truth_of, world_with
 
 from jacaros.artifacts import Session
-from jacaros.robots.world import GroundTruth, PathSample, RobotEvent
+from jacaros.robots.world import PathSample, RobotEvent
 from jacaros.runtime.mas.system import System
 from jacaros.testing import run_project
 
@@ -19,15 +19,8 @@ module = checker("07_shared_robot")
 check = module.check
 
 
-def truth_of_example() -> GroundTruth:
-    truth: GroundTruth = run_of(PROJECT).ground_truth
-    return truth
-
-
 def test_both_drive_the_robot_and_nothing_goes_wrong() -> None:
-    verdict = check(truth_of_example())
-    print(*verdict.lines(), sep="\n")
-    assert verdict.complaints == []
+    verdict = passed(check(truth_of(PROJECT)))
     assert verdict.measured["corners"] == 16
     assert verdict.measured["recharges"] == 2
 
@@ -118,10 +111,10 @@ def test_when_the_tree_dies_the_robot_stops(tmp_path: Path) -> None:
 
 
 def test_the_checker_sees_too_few_recharges_or_rounds_and_a_bump() -> None:
-    assert check(truth_of_example(), recharges=3).complaints == ["2 recharges, not 3"]
-    assert "in the order" in check(truth_of_example(), rounds=5).complaints[0]
+    assert check(truth_of(PROJECT), recharges=3).complaints == ["2 recharges, not 3"]
+    assert "in the order" in check(truth_of(PROJECT), rounds=5).complaints[0]
     bump = RobotEvent(3.0, "visitor", "collision", 1.6, 0.0, 0.0, {"with": "turtlebot", "side": "front"})
-    complaints = check(falsified(truth_of_example(), more=[bump])).complaints
+    complaints = check(falsified(truth_of(PROJECT), more=[bump])).complaints
     assert complaints == ["the robot bumped into something"]
 
 
@@ -130,8 +123,8 @@ def test_the_checker_sees_a_robot_near_the_visitor_or_moving_at_the_end() -> Non
         beside = abs(sample.x - 1.0) < 0.05 and sample.yaw > math.pi / 4
         return sample._replace(x=sample.x - 0.3) if beside else sample
 
-    assert any("m of the visitor" in each for each in check(falsified(truth_of_example(), nearer)).complaints)
-    truth = truth_of_example()
+    assert any("m of the visitor" in each for each in check(falsified(truth_of(PROJECT), nearer)).complaints)
+    truth = truth_of(PROJECT)
     end = truth.latest("turtlebot").time
 
     def moving(sample: PathSample) -> PathSample:

@@ -4,7 +4,7 @@ import math
 import re
 
 import pytest
-from examples_lab import checker, falsified, run, run_of
+from examples_lab import checker, falsified, passed, run, run_of, truth_of
 
 PROJECT = "02_square/square.jcm"
 LINE = r"\[robot\] side (\d) done, at (-?\d+) cm, (-?\d+) cm"
@@ -12,9 +12,7 @@ check = checker("02_square").check
 
 
 def test_the_robot_drives_the_square_and_comes_back() -> None:
-    verdict = check(run_of(PROJECT).ground_truth)
-    print(*verdict.lines(), sep="\n")
-    assert verdict.complaints == []
+    passed(check(truth_of(PROJECT)))
 
 
 def test_the_agent_prints_the_corners() -> None:
@@ -34,7 +32,7 @@ def test_the_other_ways_to_run_it_do_the_same(file: str) -> None:
 
 @pytest.mark.parametrize(("corner_x", "corner_y"), [(1, 0), (1, 1), (0, 1)])
 def test_the_checker_sees_a_corner_seven_centimetres_off(corner_x: float, corner_y: float) -> None:
-    truth = run_of(PROJECT).ground_truth
+    truth = truth_of(PROJECT)
     false = falsified(
         truth, lambda s: s._replace(x=s.x + 0.07) if math.dist((s.x, s.y), (corner_x, corner_y)) < 0.2 else s
     )
@@ -42,18 +40,16 @@ def test_the_checker_sees_a_corner_seven_centimetres_off(corner_x: float, corner
 
 
 def test_the_checker_sees_a_square_that_is_too_large_or_driven_the_other_way_round() -> None:
-    false = falsified(run_of(PROJECT).ground_truth, lambda s: s._replace(y=-s.y, yaw=-s.yaw))
+    false = falsified(truth_of(PROJECT), lambda s: s._replace(y=-s.y, yaw=-s.yaw))
     assert not check(false).passed
-    assert not check(
-        falsified(run_of(PROJECT).ground_truth, lambda s: s._replace(x=1.1 * s.x, y=1.1 * s.y))
-    ).passed
+    assert not check(falsified(truth_of(PROJECT), lambda s: s._replace(x=1.1 * s.x, y=1.1 * s.y))).passed
 
 
 def test_the_checker_sees_a_side_left_out_or_not_straight_and_a_robot_that_never_moved() -> None:
-    truth = run_of(PROJECT).ground_truth
+    truth = truth_of(PROJECT)
     assert not check(falsified(truth, lambda s: s if s.time < 0.8 * truth.latest().time else None)).passed
     false = falsified(
-        run_of(PROJECT).ground_truth,
+        truth_of(PROJECT),
         lambda s: s._replace(y=s.y - 0.08) if 0.4 < s.x < 0.6 and s.y < 0.5 else s,
     )
     assert [c.split(":")[0] for c in check(false).complaints] == ["metres beside the sides"]

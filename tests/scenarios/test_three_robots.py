@@ -3,9 +3,9 @@
 from pathlib import Path
 
 import pytest
-from examples_lab import checker, falsified, run_of, spoilt
+from examples_lab import checker, falsified, passed, run_of, spoilt, truth_of
 
-from jacaros.robots.world import GroundTruth, RobotEvent
+from jacaros.robots.world import RobotEvent
 from jacaros.testing import run_project
 
 PROJECT = "09_three_robots/three_robots.jcm"
@@ -13,15 +13,8 @@ module = checker("09_three_robots")
 check = module.check
 
 
-def truth_of_example() -> GroundTruth:
-    truth: GroundTruth = run_of(PROJECT).ground_truth
-    return truth
-
-
 def test_all_places_are_watched_while_each_robot_charges() -> None:
-    verdict = check(truth_of_example())
-    print(*verdict.lines(), sep="\n")
-    assert verdict.complaints == []
+    passed(check(truth_of(PROJECT)))
 
 
 def test_the_output_of_the_robots() -> None:
@@ -53,7 +46,7 @@ def test_the_checker_sees_robots_that_do_not_help(tmp_path: Path) -> None:
 
 def test_the_checker_sees_a_bump() -> None:
     bump = RobotEvent(3.0, "robot_2", "collision", 1.6, 0.0, 0.0, {"with": "robot_1", "side": "front"})
-    assert check(falsified(truth_of_example(), more=[bump])).complaints == [
+    assert check(falsified(truth_of(PROJECT), more=[bump])).complaints == [
         "a robot bumped into something (1 times)"
     ]
 
@@ -64,5 +57,5 @@ def test_the_checker_sees_a_robot_in_the_dock_of_another() -> None:
             return event._replace(data={**event.data, "dock": "dock_1"})
         return event
 
-    assert "robot_2 was in dock_1" in check(falsified(truth_of_example(), event=moved)).complaints
-    assert len(check(truth_of_example(), recharges=3).complaints) == 3
+    assert "robot_2 was in dock_1" in check(falsified(truth_of(PROJECT), event=moved)).complaints
+    assert len(check(truth_of(PROJECT), recharges=3).complaints) == 3
