@@ -1,20 +1,10 @@
 """What ends later, crossed with clocks that are set back and with minds that are stored between any two cycles."""
 
-import json
-
 import pytest
 from recording_host import RecordingHost, mind
 from test_snapshot import printed, restored
 
-from jacaros.agents.mind.mind import Mind
-from jacaros.agents.mind.storage import restore, stored
-
-
-@pytest.fixture(params=["0", "1"], ids=["fast", "plain"], autouse=True)
-def engine(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each test runs with generated code, and by the rules alone."""
-    monkeypatch.setenv("JACAROS_PLAIN", request.param)
-
+pytestmark = pytest.mark.usefixtures("engines")
 
 PENDING = {
     "time": "!s. +!s <- .wait(300); .print(waited).",
@@ -62,6 +52,10 @@ PENDING = {
         !s. +!s <- .at("now +20 ms", {+!g(1)}); .at("now +40 ms", {+e(2)}).
         +!g(X) <- .print(X). +e(X) <- .print(e, X).
         """,
+    "for": "p(1). p(2). !s. +!s <- for (p(X)) { .wait(200); .print(X) }; .print(done).",
+    "results": "!s. +!s <- !a(X, Y); .print(X, Y). +!a(X, Y) <- X = Y; .wait(100); Y = 3.",
+    "added plan": "!s. +!s <- .add_plan({+!n(X) : X > 0 <- .wait(100); .print(X)}); !n(2); .print(end).",
+    "random": "!s. +!s <- +r(1); .wait(100); -+r(2)[x]; ?r(X)[x]; .print(X); .random(R); .print(R).",
     "while": "k(0). !s. +!s <- while (k(N) & N < 3) { .wait(10); M = N; .print(M); -+k(N+1) }; .print(end).",
 }
 
@@ -98,18 +92,6 @@ def test_a_periodic_goal_continues_in_a_new_period():
     assert host.logged == []
 
 
-def later(host: RecordingHost, by: float) -> Mind:
-    """Store the mind of a host, and restore it on a clock that differs *by* so many seconds."""
-    old = host.agent
-    kept = json.dumps(stored(old))
-    for alarm in old.waits.alarms.values():
-        alarm.timer.cancel()
-    host.time += by
-    host.agent = Mind(old.name, old.program, host, old.options, old.engine.actions)
-    restore(host.agent, json.loads(kept), same_host=True)
-    return host.agent
-
-
 @pytest.mark.parametrize(
     ("by", "then"), [(-3600.0, 1.0), (-0.2, 1.0), (0.0, 1.0), (0.3, 0.7), (0.999, 0.001), (3600.0, 0.0)]
 )
@@ -117,7 +99,7 @@ def test_a_stored_wait_ends_with_its_remaining_time(by, then):
     """Time that has passed meanwhile counts; a clock that was set back does not make it longer."""
     host = mind("!s. +!s <- .wait(1000); .print(waited).")
     host.run(seconds=0)
-    later(host, by)
+    restored(host, later=by)
     began = host.time
     host.run(seconds=10)
     assert host.printed == ["waited"]
@@ -128,7 +110,7 @@ def test_a_stored_wait_ends_with_its_remaining_time(by, then):
 def test_a_stored_period_goes_on_whatever_the_clock_says(by):
     host = mind("n(0). !s. +!s <- !!a[every(1000)]. +!a : n(N) <- -+n(N+1); .print(N).")
     host.run(seconds=1.5)
-    later(host, by)
+    restored(host, later=by)
     host.run(seconds=2.9)
     assert host.printed == ["0", "1", "2", "3"]
 

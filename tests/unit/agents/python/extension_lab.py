@@ -35,3 +35,22 @@ def said(folder: Path, program: str, python: str = "") -> list[str]:
     result = run(folder, program, python)
     assert result.errors == []
     return result.of("t")
+
+
+def assert_output(folder: Path, case: str, output: list[str]) -> None:
+    """Compare a run of Python code and, after ``---``, a program with what an agent prints.
+
+    What begins with ``! `` is part of an error; ``FOLDER`` is the folder. The agent is of the class ``Mine``, if there is
+    one.
+    """
+    python, program = case.replace("FOLDER", str(folder)).split("---\n")
+    write(folder, t_asl=program, my=HEAD + python)
+    agent = "t agentClass my.Mine" if "class Mine" in python else "t"
+    (folder / "sys.mas2j").write_text(f"MAS sys {{ agents: {agent}; }}")
+    result = run_project(folder / "sys.mas2j", until_idle=True)
+    wanted = [line.replace("FOLDER", str(folder)) for line in output]
+    errors = [line.removeprefix("! ") for line in wanted if line.startswith("! ")]
+    assert result.of("t") == [line for line in wanted if not line.startswith("! ")]
+    assert [part in error for part, error in zip(errors, result.errors, strict=True)] == [True] * len(
+        errors
+    ), result.errors

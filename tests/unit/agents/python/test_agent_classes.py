@@ -3,7 +3,8 @@
 from pathlib import Path
 
 import pytest
-from extension_lab import write
+from extension_lab import assert_output, write
+from recording_host import programs
 
 from jacaros.runtime.mas.checks.files import check_files
 from jacaros.testing import RunResult, run_project
@@ -21,48 +22,76 @@ def run(
     return run_project(folder / "sys.mas2j", until_idle=True)
 
 
-def said(
-    folder: Path, program: str, python: str, agent: str = "agentClass my.Mine", **files: str
-) -> list[str]:
-    """Return the output of ``bob``; nothing may be logged."""
-    result = run(folder, program, python, agent, **files)
-    assert result.errors == []
-    return result.of("bob")
-
-
-def test_an_option_is_selected_by_the_class(tmp_path):
-    python = """
-class Mine(Agent):
-    def select_option(self, options):
-        return max(options, key=lambda option: option.plan.annotation("priority", 0))
-"""
-    program = """
+PROGRAMS = r"""
+an option is selected by the class => high72 | middle8 | no_relevant
+    class Mine(Agent):
+        def select_option(self, options):
+            return max(options, key=lambda option: option.plan.annotation("priority", 0))
+    ---
     p(1). p(2).
     !go(7). !go(8). !none.
     @a +!go(X) : p(Y) <- .print(low).
     @b[priority(2)] +!go(X) : p(Y) & Y > 1 & X == 7 <- .print(high, X, Y).
     @c[priority(1)] +!go(Y) <- .print(middle, Y).
     -!none[error(E)] <- .print(E).
-    """
-    assert said(tmp_path, program, python) == ["high72", "middle8", "no_relevant"]
-
-
-def test_the_bindings_of_options_are_seen_and_none_may_be_taken(tmp_path):
-    python = """
-class Mine(Agent):
-    def select_option(self, options):
-        return next((option for option in options if option.bindings.get("Y", 0) > 3), None)
-"""
-    program = """
-    !go(X). !go(9).
+the bindings of options are seen and none may be taken => 4 | 9 | ! no applicable plan for !none
+    class Mine(Agent):
+        def select_option(self, options):
+            return next((option for option in options if option.bindings.get("Y", 0) > 3), None)
+    ---
+    !go(X). !go(9). !none.
     +!go(Y) : Y = 2 <- .print(Y).
     +!go(Y) : Y = 4 | Y = 9 <- .print(Y).
     -!go(Y)[error(E)] <- .print(E).
-    """
-    assert said(tmp_path, program, python) == ["4", "9"]
-    result = run(tmp_path, "!go. +!go : Y = 2 <- .print(no).", python)
-    assert result.lines == []
-    assert "no applicable plan for !go" in result.errors[0]
+    +!none : Y = 2 <- .print(no).
+an option that is not offered is logged and the first is used
+=> a | ! it returned 'this one', which is not one of the choices
+    class Mine(Agent):
+        def select_option(self, options):
+            return "this one"
+    ---
+    !a. +!a : true <- .print(a). +!a <- .print(b).
+every answer of a plan for all unifiers is an option => 8
+    class Mine(Agent):
+        def select_option(self, options):
+            return max(options, key=lambda option: option.bindings.get("Y", 0))
+    ---
+    p(3). p(8). p(5).
+    !go(W).
+    @a[all_unifs] +!go(X) : p(Y) <- X = Y; .print(Y).
+    @b +!go(X) : p(Y) <- .print(no).
+the contexts of options are asked once => asked | 78
+    class Mine(Agent):
+        def select_option(self, options):
+            return options[0]
+
+    @internal_action
+    def once(agent: Agent) -> int:
+        agent.print("asked")
+        if agent.believes("used"):
+            return None
+        agent.add_belief("used")
+        return 7
+    ---
+    !go. +!go : my.once(X) & Y = X + 1 <- .print(X, Y). +!go <- .print(second).
+texts parsed at run time can name Python code => 15 | 26
+    @internal_action
+    def double(x: float) -> float:
+        return 2 * x
+
+    @arithmetic_function
+    def sq(x: float) -> float:
+        return x * x
+    ---
+    !go.
+    +!go <- .add_plan("+!late(X) : my.double(X, Y) <- .print(Y + my.sq(X))."); !late(3);
+            .term2string(T, "my.sq(5)"); .print(T + 1).
+"""
+
+
+@programs(PROGRAMS)
+def test_what_a_program_prints(tmp_path, program, output):
+    assert_output(tmp_path, program, output)
 
 
 def test_messages_are_refused_by_the_class(tmp_path):
@@ -102,17 +131,6 @@ class Mine(Agent):
     assert result.of("bob") == ["a"]
     assert f"Mine.soc_acc: ValueError: who is it? ({tmp_path}/my.py:9)" in result.errors[0]
     assert f"Mine.select_option: ZeroDivisionError: division by zero ({tmp_path}/my.py:6)" in result.errors[1]
-
-
-def test_an_option_that_is_not_offered_is_logged_and_the_first_is_used(tmp_path):
-    python = """
-class Mine(Agent):
-    def select_option(self, options):
-        return "this one"
-"""
-    result = run(tmp_path, "!a. +!a : true <- .print(a). +!a <- .print(b).", python)
-    assert result.of("bob") == ["a"]
-    assert "it returned 'this one', which is not one of the choices" in result.errors[0]
 
 
 @pytest.mark.parametrize(
@@ -180,47 +198,15 @@ def look(agent: Agent) -> list[str]:
     assert result.errors == ["[bob] info: looking"]
 
 
-def test_every_answer_of_a_plan_for_all_unifiers_is_an_option(tmp_path):
-    python = """
-class Mine(Agent):
-    def select_option(self, options):
-        return max(options, key=lambda option: option.bindings.get("Y", 0))
-"""
-    program = """
-    p(3). p(8). p(5).
-    !go(W).
-    @a[all_unifs] +!go(X) : p(Y) <- X = Y; .print(Y).
-    @b +!go(X) : p(Y) <- .print(no).
-    """
-    assert said(tmp_path, program, python) == ["8"]
-
-
 def test_a_plan_after_a_general_one_is_reachable_if_the_class_selects(tmp_path):
     python = """
 class Mine(Agent):
     def select_option(self, options):
         return options[-1]
 """
-    assert said(tmp_path, "!go(1). +!go(_) <- .print(any). +!go(1) <- .print(one).", python) == ["one"]
+    result = run(tmp_path, "!go(1). +!go(_) <- .print(any). +!go(1) <- .print(one).", python)
+    assert (result.of("bob"), result.errors) == (["one"], [])
     assert check_files([tmp_path / "sys.mas2j"]).diagnostics == []
-
-
-def test_texts_parsed_at_run_time_can_name_python_code(tmp_path):
-    python = """
-@internal_action
-def double(x: float) -> float:
-    return 2 * x
-
-@arithmetic_function
-def sq(x: float) -> float:
-    return x * x
-"""
-    program = """
-    !go.
-    +!go <- .add_plan("+!late(X) : my.double(X, Y) <- .print(Y + my.sq(X))."); !late(3);
-            .term2string(T, "my.sq(5)"); .print(T + 1).
-    """
-    assert said(tmp_path, program, python, "") == ["15", "26"]
 
 
 def test_a_clone_is_of_the_same_class(tmp_path):
@@ -251,21 +237,3 @@ def test_a_check_looks_at_the_classes_and_the_python_code(tmp_path):
         ("warning", "the Java class `your.Mine` has no effect"),
         ("warning", "unknown internal action `my.oen`"),
     ]
-
-
-def test_the_contexts_of_options_are_asked_once(tmp_path):
-    python = """
-class Mine(Agent):
-    def select_option(self, options):
-        return options[0]
-
-@internal_action
-def once(agent: Agent) -> int:
-    agent.print("asked")
-    if agent.believes("used"):
-        return None
-    agent.add_belief("used")
-    return 7
-"""
-    program = "!go. +!go : my.once(X) & Y = X + 1 <- .print(X, Y). +!go <- .print(second)."
-    assert said(tmp_path, program, python) == ["asked", "78"]

@@ -1,6 +1,7 @@
 """Arithmetic functions that a project writes in Python."""
 
-from extension_lab import run, said
+from extension_lab import assert_output, said
+from recording_host import programs
 
 from jacaros.agents.terms import operators
 from jacaros.testing import AgentHarness
@@ -28,45 +29,35 @@ def word(x):
 """
 
 
-def test_a_function_stands_in_expressions_and_conditions(tmp_path):
-    program = """
+PROGRAMS = """
+a function stands in expressions and conditions => 10 | 4 | 7 | yes | 8 | ok
     large(X) :- my.sq(X) > 10.
     side(4).
     !go.
     +!go : side(S) & large(S)
       <- X = my.sq(3) + 1; .print(X); .print(my.sq(my.sq(2)) / 4); .print(my.largest(1, 7, 3));
          if (my.sq(S) == 16) { .print(yes) }; .print(my.area(box(2, S))); +side(my.sq(S)); ?side(16); .print(ok).
-    """
-    assert said(tmp_path, program, SQ) == ["10", "4", "7", "yes", "8", "ok"]
+a function waits for its arguments => 10
+    !go. +!go <- Y = my.sq(X) + 1; X = 3; .print(Y).
+a function may be registered => 9
+    { register_function("my.sq") } !go. +!go <- .print(my.sq(3)).
+a Java function is reported => hello | ! a function sq with @arithmetic_function in your.py
+    { register_function("your.sq") } !go. +!go <- .print(hello).
+a wrong number of arguments is reported => ! my.sq
+    !go. +!go <- X = my.sq(1, 2).
+a function that returns no number fails the step
+=> arithmetic_error | ! my.word: the function returned 'four', which is not a number
+    !go. +!go <- X = my.word(1). -!go[error(E)] <- .print(E).
+an exception fails the step
+=> arithmetic_error | ! [t] error: my.broken: ValueError: not today (FOLDER/my.py:18)
+    !go. +!go <- X = my.broken(1); .print(X).
+    -!go[error(E), error_msg("my.broken: ValueError: not today (FOLDER/my.py:18)")] <- .print(E).
+"""
 
 
-def test_functions_wait_for_arguments_and_may_be_registered(tmp_path):
-    program = "!go. +!go <- Y = my.sq(X) + 1; X = 3; .print(Y)."
-    assert said(tmp_path, program, SQ) == ["10"]
-    program = '{ register_function("my.sq") } !go. +!go <- .print(my.sq(3)).'
-    assert said(tmp_path, program, SQ) == ["9"]
-
-
-def test_java_functions_and_wrong_numbers_of_arguments_are_reported(tmp_path):
-    result = run(tmp_path, '{ register_function("your.sq") } !go. +!go <- .print(hello).', SQ)
-    assert result.of("t") == ["hello"]
-    assert "a function sq with @arithmetic_function in your.py" in result.errors[0]
-    result = run(tmp_path, "!go. +!go <- X = my.sq(1, 2). -!go <- .print(failed).", SQ)
-    assert result.exit_code in (0, 1)
-    assert "my.sq" in result.errors[0]
-    result = run(tmp_path, "!go. +!go <- X = my.word(1). -!go[error(E)] <- .print(E).", SQ)
-    assert result.of("t") == ["arithmetic_error"]
-    assert "my.word: the function returned 'four', which is not a number" in result.errors[0]
-
-
-def test_an_exception_fails_the_step(tmp_path):
-    program = (
-        "!go. +!go <- X = my.broken(1); .print(X). -!go[error(E), error_msg(M)] <- .print(E); .print(M)."
-    )
-    result = run(tmp_path, program, SQ)
-    assert result.of("t")[0] == "arithmetic_error"
-    assert result.of("t")[1] == f"my.broken: ValueError: not today ({tmp_path}/my.py:18)"
-    assert result.errors == [f"[t] error: {result.of('t')[1]}"]
+@programs(PROGRAMS)
+def test_what_a_program_prints(tmp_path, program, output):
+    assert_output(tmp_path, f"{SQ}---\n{program}", output)
 
 
 def test_the_functions_of_a_project_are_gone_after_its_run(tmp_path):

@@ -1,7 +1,7 @@
 """Internal actions that a project writes in Python."""
 
 import pytest
-from extension_lab import HEAD, run, said, write
+from extension_lab import HEAD, assert_output, run, said, write
 from recording_host import programs
 
 from jacaros.testing import run_project
@@ -152,31 +152,65 @@ the calling agent is available => once kitchen | 1
     +!go <- my.remember(kitchen).
     +seen(X) : my.none <- .print(X).
     +!tell(How) : seen(X) <- .print(How, " ", X); .count(seen(_), N); .print(N).
+a function without value succeeds unless it returns false => yes | yes | ia_failed
+    @internal_action
+    def test(x):
+        return [None, True, False][x]
+    ---
+    !go(0). !go(1). !go(2). +!go(N) <- my.test(N); .print(yes). -!go(_)[error(E)] <- .print(E).
+a value that is not declared is reported => internal_action | ! write 'def sum(...) -> int'
+    @internal_action
+    def sum(x, y):
+        return x + y
+    ---
+    !go. +!go <- my.sum(1, 2). -!go[error(E)] <- .print(E).
+an exception in a condition is reported with its line => yes | ! my.py:5
+    @internal_action
+    def bad():
+        raise ValueError("no")
+    ---
+    !go. +!go : my.bad <- .print(no). +!go <- .print(yes).
+an exception fails only the step and is logged with its line
+=> internal_action 2 | other | ! [t] error: my.bad: ZeroDivisionError: division by zero (FOLDER/my.py:5)
+    @internal_action
+    def bad(x):
+        return 1 / x
+    ---
+    !go. !other.
+    +!go <- my.bad(0).
+    -!go[error(E), error_msg("my.bad: ZeroDivisionError: division by zero (FOLDER/my.py:5)"), code_line(L)]
+      <- .print(E, " ", L).
+    +!other <- .wait(10); .print(other).
+a coroutine cannot be a condition
+=> other | ! t.asl:1:13: warning: `my.fetch` acts or takes time and never holds as a condition | ! and cannot be a condition
+    @internal_action
+    async def fetch(x: int) -> int:
+        return x
+    ---
+    !go. +!go : my.fetch(1, X) <- .print(X). +!go <- .print(other).
+a result that contains itself fails the step => a: internal_action | b: internal_action | ! my.now: Rec | ! my.later: Rec
+    def endless():
+        found = []
+        found.append(found)
+        return found
+
+    @internal_action
+    def now() -> list:
+        return endless()
+
+    @internal_action
+    async def later() -> list:
+        return endless()
+    ---
+    !a. !b.
+    +!a <- my.now(X). -!a[error(E)] <- .print("a: ", E).
+    +!b <- my.later(X). -!b[error(E)] <- .print("b: ", E).
 """
 
 
 @programs(EXTENDED)
 def test_what_a_program_prints(tmp_path, program, output):
-    python, program = program.split("---\n")
-    assert said(tmp_path, program, python) == output
-
-
-@pytest.mark.parametrize(("returned", "outcome"), [("None", "yes"), ("True", "yes"), ("False", "ia_failed")])
-def test_a_function_without_value_succeeds_unless_it_returns_false(tmp_path, returned, outcome):
-    python = f"@internal_action\ndef test(x):\n    return {returned}\n"
-    program = "!go. +!go <- my.test(1); .print(yes). -!go[error(E)] <- .print(E)."
-    assert said(tmp_path, program, python) == [outcome]
-
-
-def test_undeclared_values_and_exceptions_in_conditions_are_reported(tmp_path):
-    python = "@internal_action\ndef sum(x, y):\n    return x + y\n"
-    result = run(tmp_path, "!go. +!go <- my.sum(1, 2). -!go[error(E)] <- .print(E).", python)
-    assert result.of("t") == ["internal_action"]
-    assert "write 'def sum(...) -> int'" in result.errors[0]
-    python = "@internal_action\ndef bad():\n    raise ValueError('no')\n"
-    result = run(tmp_path, "!go. +!go : my.bad <- .print(no). +!go <- .print(yes).", python)
-    assert result.of("t") == ["yes"]
-    assert "my.py:5" in result.errors[0]
+    assert_output(tmp_path, program, output)
 
 
 def test_dropping_the_intention_cancels_its_coroutine(tmp_path):
@@ -215,29 +249,6 @@ async def long():
     result = run(tmp_path, "!a. +!a <- my.long. !b. +!b <- .wait(50); .stopMAS.", python)
     assert result.errors == []
     assert (tmp_path / "tidy").exists()
-
-
-def test_a_coroutine_cannot_be_a_condition(tmp_path):
-    python = "@internal_action\nasync def fetch(x: int) -> int:\n    return x\n"
-    program = "!go. +!go : my.fetch(1, X) <- .print(X). +!go <- .print(other)."
-    result = run(tmp_path, program, python)
-    assert result.of("t") == ["other"]
-    assert "`my.fetch` acts or takes time and never holds as a condition" in result.errors[0]
-    assert "t.asl:1:13" in result.errors[0]
-
-
-def test_an_exception_fails_only_the_step_and_is_logged_with_its_line(tmp_path):
-    python = "\n@internal_action\ndef bad(x):\n    return 1 / x\n"
-    program = """
-    !go. !other.
-    +!go <- my.bad(0).
-    -!go[error(E), error_msg(M), code_line(L)] <- .print(E, " ", L); .print(M).
-    +!other <- .wait(10); .print(other).
-    """
-    result = run(tmp_path, program, python)
-    message = f"my.bad: ZeroDivisionError: division by zero ({tmp_path}/my.py:6)"
-    assert result.of("t") == ["internal_action 3", message, "other"]
-    assert result.errors == [f"[t] error: {message}"]
 
 
 @pytest.mark.parametrize("word", ["def", "async def"])
@@ -386,27 +397,3 @@ def test_modules_beside_the_project_file_serve_programs_elsewhere(tmp_path):
     (tmp_path / "src" / "asl" / "bob.asl").write_text("!go. +!go <- my.one(X); .print(X).")
     result = run_project(tmp_path / "sys.mas2j", until_idle=True)
     assert (result.lines, result.errors) == (["[bob] 1"], [])
-
-
-def test_a_result_that_contains_itself_fails_the_step(tmp_path):
-    python = """
-def endless():
-    found = []
-    found.append(found)
-    return found
-
-@internal_action
-def now() -> list:
-    return endless()
-
-@internal_action
-async def later() -> list:
-    return endless()
-"""
-    program = """
-    !a. !b.
-    +!a <- my.now(X). -!a[error(E)] <- .print("a: ", E).
-    +!b <- my.later(X). -!b[error(E)] <- .print("b: ", E).
-    """
-    result = run(tmp_path, program, python)
-    assert sorted(result.of("t")) == ["a: internal_action", "b: internal_action"]
