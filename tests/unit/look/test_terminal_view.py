@@ -102,17 +102,12 @@ def test_the_speed_of_the_run_is_shown() -> None:
     view.close()
 
 
-def test_without_a_terminal_plain_lines_are_printed() -> None:
+def test_without_a_terminal_nothing_is_drawn() -> None:
     view, wall, out, _ = view_of(terminal=False)
-    for step in range(100):
-        wall.now += 0.125
-        view.frame(step * 10.0, [robot(x=1.0)])
-    lines = out.getvalue().splitlines()
-    assert len(lines) == 2
-    assert lines[0] == "t 390.0 s  ×78  turtlebot (1.00, 0.00) 61 %"
-    assert "\x1b" not in out.getvalue()
-    assert not view.takes_prints
+    wall.now += 1.0
+    view.frame(10.0, [robot(x=1.0)])
     view.close()
+    assert (out.getvalue(), view.takes_prints) == ("", False)
 
 
 def test_without_a_world_goals_and_output_are_shown() -> None:

@@ -31,28 +31,28 @@ _SCALES = {"x": 1000, "y": 1000, "yaw": 1000, "battery": 10, "charging": 1, "tou
 """Integers per unit of each field of `jacaros.robots.world.data.ground_truth.RobotState`."""
 
 
-def write_replay(recording: Recording, path: str | Path, title: str | None = None) -> None:
-    """Write the page; *title* is the name of the project or the world by default. A page is written whole or not at all.
+def write_replay(recording: Recording, path: str | Path) -> None:
+    """Write the page, whole or not at all.
 
     Raises:
         OSError: the file cannot be written.
     """
     path = Path(path)
     if path.exists() and not path.is_file():  # a device or pipe
-        path.write_text(replay_html(recording, title), encoding="utf-8", newline="\n")
+        path.write_text(replay_html(recording), encoding="utf-8", newline="\n")
         return
     part = path.with_name(f"{path.name}.part")
     try:
-        part.write_text(replay_html(recording, title), encoding="utf-8", newline="\n")
+        part.write_text(replay_html(recording), encoding="utf-8", newline="\n")
         part.replace(path)
     except OSError:
         part.unlink(missing_ok=True)
         raise
 
 
-def replay_html(recording: Recording, title: str | None = None) -> str:
+def replay_html(recording: Recording) -> str:
     """Return the text of the page."""
-    shown = html.escape(title or title_of(recording))
+    shown = html.escape(title_of(recording))
     page, script = (STATIC / "page.html").read_text(encoding="utf-8"), bundle(STATIC, "recorded")
     styles = {
         name: (STATIC / f"{name}.css").read_text(encoding="utf-8") for name in _PLACES.findall(page) if name

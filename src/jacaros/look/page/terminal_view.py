@@ -1,8 +1,8 @@
 """A live view of a run in the terminal: a map of braille dots with the robots, batteries, goals and output.
 
 It is drawn on standard error, at most ten times per second of real time and for at most a tenth of the time, so that it
-does not slow a virtual run, which may simulate hundreds of seconds between two pictures. Without a terminal, it prints
-plain lines at intervals.
+does not slow a virtual run, which may simulate hundreds of seconds between two pictures. Without a terminal, nothing is
+drawn.
 """
 
 import math
@@ -23,8 +23,6 @@ from jacaros.runtime.output import Output, Wrapped
 
 FRAME_PERIOD = 0.1
 """Seconds of real time between two pictures."""
-LINE_PERIOD = 5.0
-"""Seconds between two lines without a terminal."""
 _ARROWS = "→↗↑↖←↙↓↘"
 _COLOURS = ("cyan", "magenta", "green", "yellow", "blue", "red")
 _PRINTS = 5
@@ -185,9 +183,7 @@ class TerminalView:
             for robot in robots:
                 self._trail.point(robot.x, robot.y)
         passed = self._wall() - self._drawn_at
-        if passed >= (
-            max(FRAME_PERIOD, min(0.5, 10.0 * self._cost)) if self._console.is_terminal else LINE_PERIOD
-        ):
+        if passed >= max(FRAME_PERIOD, min(0.5, 10.0 * self._cost)):
             self._measure_speed(passed)
             if self._screen is None or not self._screen.lagging:
                 self._draw()
@@ -230,7 +226,6 @@ class TerminalView:
 
     def _draw(self) -> None:
         if not self._console.is_terminal:
-            self._console.print(self.line(), soft_wrap=True)
             return
         if self._live is None:
             self._live = Live(
@@ -238,17 +233,6 @@ class TerminalView:
             )
             self._live.start()
         self._live.update(self.picture(), refresh=True)
-
-    def line(self) -> Text:
-        """Return the run in one line."""
-        robots = "  ".join(
-            f"{robot.name} ({robot.x:.2f}, {robot.y:.2f})"
-            + (f" {robot.battery:.0f} %" if robot.battery != UNKNOWN else "")
-            for robot in self._robots
-        )
-        return Text(
-            f"t {self._t:.1f} s  ×{self._factor:.0f}  {robots}{''.join(f'  {row}' for row in self._pursued())}"
-        )
 
     def picture(self) -> Group:
         """Return the whole view."""

@@ -10,9 +10,9 @@ import re
 import secrets
 import socket
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from urllib.parse import urlsplit
 
+from jacaros.look.page.page import STATIC
 from jacaros.runtime.errors import UsageError
 
 LOOPBACK = "127.0.0.1"
@@ -94,7 +94,6 @@ def _is_number(name: str) -> bool:
 
 # ---- files
 
-STATIC = Path(__file__).parent.parent / "static"
 START = "page.html"
 """The file at the root of the address."""
 _TYPES = {
@@ -106,16 +105,10 @@ _TYPES = {
 
 
 class Pages:
-    """The files below one folder, by request path; no other file is readable.
+    """The files of the page, by request path; no other file is readable."""
 
-    Args:
-        folder: folder with the files.
-    """
-
-    def __init__(self, folder: Path = STATIC) -> None:
-        self._files = {
-            each.relative_to(folder).as_posix(): each for each in folder.rglob("*") if each.suffix in _TYPES
-        }
+    def __init__(self) -> None:
+        self._files = {each.name: each for each in STATIC.iterdir() if each.suffix in _TYPES}
         self._read: dict[str, bytes] = {}
 
     def find(self, path: str) -> tuple[str, bytes] | None:

@@ -76,17 +76,14 @@ class LiveServer:
         listening: listening socket.
         access: access rules.
         source: provides the records.
-        pages: files of the page.
 
     Attributes:
         visitors: number of pages that have connected so far.
     """
 
-    def __init__(
-        self, listening: socket.socket, access: Access, source: LiveView, pages: Pages | None = None
-    ) -> None:
+    def __init__(self, listening: socket.socket, access: Access, source: LiveView) -> None:
         self._socket, self._access, self._source = listening, access, source
-        self._pages = pages or Pages()
+        self._pages = Pages()
         self._beat: Beat | None = None
         self._server: Server | None = None
         self._idle: dict[_Connection, None] = {}
