@@ -154,35 +154,6 @@ def test_line_ends_of_other_systems_are_recognised(tmp_path: Path) -> None:
     assert file.counts.gzip_bytes == len(gzip.compress(AGENT.replace("\n", "\r\n").encode(), 9, mtime=0))
 
 
-LISTINGS = {"ArtCmdVel": 50, "ArtCmdVelMuxAndOdometry": 107, "ArtSimBattery": 81, "ArtCleaning": 67}
-"""The numbers of the last lines of the thesis's listings of artifacts."""
-
-SCENARIOS = {
-    50: ["ArtCmdVel"],
-    107: ["ArtCmdVelMuxAndOdometry"],
-    81: ["ArtSimBattery"],
-    188: ["ArtCmdVelMuxAndOdometry", "ArtSimBattery"],
-    255: ["ArtCmdVelMuxAndOdometry", "ArtSimBattery", "ArtCleaning"],
-}
-"""The column "Artifacts" of table 8.2, with the artifacts that the thesis names for each scenario."""
-
-
-def listing(name: str) -> str:
-    """A source of as many lines as a listing of the thesis has, a third of them comments and blank lines."""
-    kinds = ("# about the next line", "", f"class {name}_{{0}}: pass", "x = {0}", "y = {0}", "z = {0}")
-    return "".join(f"{kinds[number % 6].format(number)}\n" for number in range(1, LISTINGS[name] + 1))
-
-
-@pytest.mark.parametrize(("lines", "artifacts"), SCENARIOS.items())
-def test_physical_lines_follow_the_rule_of_the_thesis(tmp_path: Path, lines: int, artifacts) -> None:
-    (tmp_path / "agent.asl").write_text("!go.\n+!go.\n")
-    for name in artifacts:
-        (tmp_path / f"{name}.py").write_text(listing(name))
-    program = measure([tmp_path])[0]
-    assert program.counts(Group.ARTIFACTS).lines == lines
-    assert program.total.lines == lines + 2
-
-
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
 

@@ -97,40 +97,6 @@ async def test_init_cannot_be_called_by_agents_unless_it_is_an_operation_too(sta
     assert len(stage.main.properties(restart)) == 2
 
 
-class Several(Artifact):
-    def init(self, start: int = 0):
-        self.define_property("made", "usual", start)
-
-    @initializer
-    def init_in_a_room(self, room: str, start: int):
-        self.define_property("made", room, start)
-
-    @initializer
-    async def init_of_many(self, *rooms: str):
-        await self.sleep(1)
-        self.define_property("made", list(rooms))
-
-
-class Derived(Several):
-    def init_in_a_room(self, room: str, start: int):
-        self.define_property("made", f"derived {room}", start)
-
-
-async def test_of_several_inits_the_one_with_that_number_of_arguments_runs(stage):
-    for kind, args, values in [
-        (Several, (), ("usual", 0)),
-        (Several, (3,), ("usual", 3)),
-        (Several, ("hall", 3), ("hall", 3)),
-        (Several, ("a", "b", "c"), (["a", "b", "c"],)),
-        (Derived, (1,), ("usual", 1)),
-        (Derived, ("hall", 3), ("derived hall", 3)),
-    ]:
-        it = await stage.make(kind, *args)
-        assert stage.property(it, "made") == values
-        assert "unknown" in str(stage.call(it, "init", *args).reason), "an init is not an operation"
-        stage.main.dispose_artifact(it)
-
-
 def test_two_inits_with_the_same_arity_are_an_error():
     with pytest.raises(InvalidArtifact, match="are both init init with 1 arguments"):
 

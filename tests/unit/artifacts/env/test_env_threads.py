@@ -73,12 +73,6 @@ async def test_a_thread_changes_nothing_itself(stage, it):
     assert stage.property(it, "count") == (0,)
 
 
-async def test_any_thread_may_start_a_process(stage, it, made):
-    await asyncio.get_running_loop().run_in_executor(None, made.start, "inc")
-    await stage.clock.sleep(0)
-    assert stage.property(it, "count") == (10,)
-
-
 def test_a_thread_that_starts_a_process_after_the_end_of_the_loop_does_no_harm():
     kept = []
 

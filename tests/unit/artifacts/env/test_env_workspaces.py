@@ -29,19 +29,6 @@ class Other(Artifact):
     def inc_any(self, *x: object): ...
 
 
-async def test_main_exists_with_its_standard_artifacts(stage):
-    assert stage.environment.workspaces() == (stage.main,)
-    assert (stage.main.path, stage.main.name) == ("/main", "main")
-    assert [each.name for each in stage.main.artifacts()] == [
-        "blackboard",
-        "console",
-        "manrepo",
-        "system",
-        "workspace",
-    ]
-    assert stage.main.lookup("console").creator is None
-
-
 async def test_workspaces_form_a_tree(stage):
     lab = stage.environment.create_workspace("/main/lab")
     inner = stage.environment.create_workspace("/main/lab/inner")
@@ -62,18 +49,6 @@ async def test_a_workspace_that_exists_or_has_no_parent_is_refused(stage):
     assert unknown.value.reason == Structure("unknown_workspace", ("/mian",))
     with pytest.raises(UnknownWorkspace):
         stage.environment.workspace("/main/lab")
-
-
-async def test_each_workspace_has_names_of_its_own_and_ids_are_valid_in_the_whole_environment(stage):
-    lab = stage.environment.create_workspace("/main/lab")
-    here, there = await stage.make(Counter, 1), await lab.make_artifact("it", Counter, [100])
-    assert stage.main.lookup("it") is here
-    assert lab.lookup("it") is there
-    assert (here.path, there.path) == ("/main/it", "/main/lab/it")
-    watcher = stage.watch(there)
-    assert stage.call(there, "inc").ok
-    assert watcher.notes[-1] == "-count(100) +count(101)"
-    assert stage.main.observers(there) == (watcher,)
 
 
 async def test_lookup_of_an_unknown_artifact_suggests_a_name(stage):

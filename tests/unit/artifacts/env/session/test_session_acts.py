@@ -57,21 +57,6 @@ async def test_a_failure_is_raised_with_its_reason(session):
     assert raised.value.reason.functor == "wrong_op_arguments"
 
 
-async def test_own_artifacts_come_before_focused_ones_and_those_before_others(stage):
-    first = await stage.make(Counter, name="first", creator="other")
-    second = await stage.make(Counter, name="second", creator="other")
-    session = session_in(stage)
-    await session.act("inc")
-    assert stage.property(first, "count") == (1,)
-    session.focus(second)
-    await session.act("inc")
-    assert stage.property(second, "count") == (1,)
-    own = await session.make_artifact("own", Counter)
-    await session.make_artifact("younger", Counter)
-    await session.act("inc")
-    assert stage.property(own, "count") == (1,)
-
-
 async def test_an_operation_is_directed_to_an_artifact_or_a_workspace(stage, session):
     stage.environment.create_workspace("/main/lab")
     await session.make_artifact("counter", Counter)
