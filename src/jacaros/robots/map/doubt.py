@@ -28,10 +28,11 @@ def on_obstacles(cells: OccupancyCells, echoes: Iterable[Point], around: Sequenc
     odds = cells.odds
     on = off = 0
     for x, y in echoes:
-        column, row = cells.cell_at(x, y)
-        if any(odds.get((column + dx, row + dy), 0.0) > 0.0 for dx, dy in around):
+        cell = column, row = cells.cell_at(x, y)
+        seen = odds.get(cell, 0.0)  # usually the cell itself
+        if seen > 0.0 or any(odds.get((column + dx, row + dy), 0.0) > 0.0 for dx, dy in around):
             on += 1
-        elif (column, row) in odds:
+        elif seen:
             off += 1
     return on, off
 

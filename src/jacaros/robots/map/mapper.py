@@ -178,6 +178,10 @@ MATCHED = 120
 HARDLY_ANY, DOUBTED = 99.0, 0.5
 """Quality of the pose below which a robot that stands looks again after the second number, in seconds."""
 
+COMPARED, ELSEWHERE, CHANGED = 30, 0.2, 0.3
+"""Approximate number of ranges that are compared while the robot stands, metres by which they must differ, and the share of
+those that do, for a scan to be looked at."""
+
 
 class Mapper:
     """Add scans to a grid, each from the robot's pose at its time.
@@ -204,6 +208,7 @@ class Mapper:
         self._surfaces = Surfaces()
         self._last: tuple[float, Pose] | None = None
         self._newest: tuple[float, Any] = (0.0, None)
+        self._ranges: Sequence[float] = ()
 
     def take_scan(self, stamp: float, message: Any) -> bool:
         """Take a ``sensor_msgs/msg/LaserScan`` with the time *stamp*, in seconds.
@@ -214,14 +219,14 @@ class Mapper:
         """
         self._newest = (stamp, message)
         pose = self.localisation.pose_at(stamp)
-        if pose is None or self.search is not None or not self._is_news(stamp, pose):
+        if pose is None or self.search is not None or not self._is_news(stamp, pose, message.ranges):
             return False
         scan = read_scan(message, self._options)
-        self._last = (stamp, pose)
+        self._last, self._ranges = (stamp, pose), message.ranges
         if self.matching and self._surfaces:
             echoes = _some(scan.echoes)
             pose = match(self._surfaces, echoes, pose) or pose
-            if not self.doubt.confirms(stamp, pose.points(echoes)):
+            if not self.doubt.confirms(stamp, pose.points(echoes[::2])):
                 return False
             self.localisation.correct(stamp, pose)
             self._last = (stamp, pose)
@@ -231,15 +236,24 @@ class Mapper:
             self._surfaces.add(scan.echoes)
         return True
 
-    def _is_news(self, stamp: float, pose: Pose) -> bool:
+    def _is_news(self, stamp: float, pose: Pose, ranges: Sequence[float]) -> bool:
         if self._last is None:
             return True
         before, last = self._last
-        return (
-            math.dist(last[:2], pose[:2]) >= DRIVEN
-            or abs(normalised(pose.yaw - last.yaw)) >= TURNED
-            or not 0.0 <= stamp - before < (STOOD if self.doubt.quality > HARDLY_ANY else DOUBTED)
+        if math.dist(last[:2], pose[:2]) >= DRIVEN or abs(normalised(pose.yaw - last.yaw)) >= TURNED:
+            return True
+        certain = self.doubt.quality > HARDLY_ANY
+        return not 0.0 <= stamp - before < (STOOD if certain else DOUBTED) or (
+            certain and self._differs(ranges)
         )
+
+    def _differs(self, ranges: Sequence[float]) -> bool:
+        """Return whether a robot that has hardly moved sees something else than before: it was carried."""
+        if len(ranges) != len(self._ranges):
+            return True
+        every = max(1, len(ranges) // COMPARED)
+        pairs = zip(ranges[::every], self._ranges[::every], strict=True)
+        return sum(abs(now - before) > ELSEWHERE for now, before in pairs) > CHANGED * COMPARED
 
     def newest_scan(self) -> Scan | None:
         """Return the newest scan; None before the first one."""
