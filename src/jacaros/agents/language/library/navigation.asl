@@ -437,7 +437,9 @@ nearly_there :- visits_within(Metres) & .desire(reach(Place, _)) & from(Place, F
 +!return_to_work : .desire(arrived(Place))
   <- !go_to(Place).
 
-+!return_to_work.
+// The leg of a robot that drives leg by leg began where it no longer is: it ends, and the next one begins here.
++!return_to_work
+  <- .succeed_goal(drive_leg).
 
 // The robot is lifted: it stands until its localisation has had the time to doubt.
 +hazard(wheel_drop, _) <- +lifted.
