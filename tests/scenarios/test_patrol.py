@@ -78,7 +78,7 @@ def test_the_agent_gives_up_when_the_dock_gives_no_current(tmp_path: Path) -> No
 
 
 def test_the_agent_leaves_out_a_corner_when_something_stands_in_its_way(tmp_path: Path) -> None:
-    wall = "walls:\n  - box: {from: [1, -0.1], to: [1.1, 0.1]}\n"
+    wall = "walls:\n  - box: {from: [1, -0.1], to: [1.1, 0]}\n"
     world = world_with(tmp_path, EXAMPLES / "04_patrol/patrol.yaml", "walls:\n", wall)
     lines = run_project(EXAMPLES / PROJECT, world=world, seconds=60).lines
     assert lines[0].startswith("[robot] I need help, or come back later: place 1 is out of reach, blocked(")

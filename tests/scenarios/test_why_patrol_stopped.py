@@ -61,7 +61,7 @@ def test_what_the_suspended_patrol_and_the_plan_that_charges_wait_for(records: l
     assert any("!patrol" in fact.text and "is suspended" in fact.text for fact in answer.facts)
     assert any("driveTo" in fact.text and "waits for" in fact.text for fact in answer.facts)
     answer = explain(records, "waiting", at=low_at(records) + 0.4)
-    assert any("!charge_first, waits for the resource wheels" in fact.text for fact in answer.facts)
+    assert any("!charge_now, waits for the resource wheels" in fact.text for fact in answer.facts)
 
 
 def test_the_same_program_decides_as_before(records: list[Record]) -> None:

@@ -13,7 +13,10 @@ RADIUS = 0.18
 """Metres from the laser to the edge of a TurtleBot."""
 
 MARGIN = 0.05
-"""Metres that stay free in front of the robot, and half of that at each side."""
+"""Metres that stay free in front of the robot."""
+
+BESIDE = 0.01
+"""The same at each side: a robot that stands next to something may leave."""
 
 REACTION = 0.3
 """Seconds until a robot brakes: the age of a scan, and the way of a command."""
@@ -60,7 +63,7 @@ class Lookout:
         """Return the free metres in front of the robot (*towards* > 0) or behind it; 0 without a fresh scan."""
         if not self.sees:
             return 0.0
-        radius, lane = self._radius, self._radius + 0.5 * MARGIN
+        radius, lane = self._radius, self._radius + BESIDE
         sign = math.copysign(1.0, towards)
         ways = (
             sign * x - math.sqrt(max(0.0, radius * radius - y * y))
