@@ -9,6 +9,9 @@ Draw = random.Random
 FURTHER = 1000
 """Seeds above this have one of the further kinds of disturbances."""
 
+SEEN = 100
+"""Seeds above this, in either series, are kept out of what the programs are tuned with."""
+
 DOCK = (1.0, 1.0)
 """Where the dock is in the worlds in which robots recharge, in metres."""
 
@@ -70,12 +73,9 @@ def kind_of(scenario: str, seed: int) -> str:
     return kinds[seed % FURTHER % len(kinds)]
 
 
-def held_out(scenario: str, seed: int) -> bool:
-    """Whether a seed is kept out of what the programs were tuned with.
-
-    Every second turn of all kinds is: the parity of the seed itself would keep out whole kinds.
-    """
-    return seed % FURTHER // len(kinds_for(scenario, seed)) % 2 == 1
+def held_out(seed: int) -> bool:
+    """Whether a seed is kept out of what the programs were tuned with."""
+    return seed % FURTHER > SEEN
 
 
 def is_further(seed: int) -> bool:

@@ -3,13 +3,13 @@
 import os
 import shutil
 import tempfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
 
 import jacaros.robots.world
-from disturbances import FURTHER, faults_for, kind_of
+from disturbances import FURTHER, SEEN, faults_for, kind_of
 from jacaros.testing import RunResult, run_project
 from outcomes import Damage, damage, disturbed_at, end_of, told_at
 from scenarios import FETCH, FOLDER, FURTHER_SCENARIOS, SCENARIOS
@@ -125,10 +125,18 @@ def further_jobs(runs: int) -> list[Job]:
     return [job for job in every if job.side != PATIENT]
 
 
-def run_all(wanted: list[Job], workers: int | None = None) -> list[Outcome]:
+def held_out_jobs(runs: int, further: int) -> list[Job]:
+    """That number of runs of the agents with seeds that are kept out of tuning, and with the further kinds."""
+    every = jobs(range(SEEN + 1, SEEN + runs + 1))
+    first = FURTHER + SEEN + 1
+    every += jobs(range(first, first + further), FURTHER_SCENARIOS)
+    return [job for job in every if job.side in (AGENTS, OVER_NAV2)]
+
+
+def run_all(wanted: list[Job], workers: int | None = None) -> Iterator[Outcome]:
     """Make runs, as many at once as there are processors; their order does not matter to their outcomes."""
     with ProcessPoolExecutor(workers or os.cpu_count()) as pool:
-        return list(pool.map(run_one, wanted, chunksize=4))
+        yield from pool.map(run_one, wanted)
 
 
 def run_one(job: Job) -> Outcome:

@@ -10,7 +10,7 @@ import comparison
 import sizes
 import success
 from counting import Group, ProgramMetrics, Table, as_markdown
-from disturbances import is_further
+from disturbances import held_out, is_further
 from disturbed_runs import AGENTS, BASELINE, OVER_NAV2, PATIENT, Outcome
 from scenarios import FOLDER, SCENARIOS
 from workshop.published import size_table
@@ -31,7 +31,7 @@ SENTENCES = (
 def page(record: Sequence[Outcome]) -> str:
     """The text of ``docs/experiment.md``, from all recorded runs."""
     outcomes, further = split(record)
-    tables = all_tables(outcomes) | further_tables(further)
+    tables = all_tables(outcomes) | further_tables(further) | halves_tables(record)
     words = (FOLDER / "page.md").read_text(encoding="utf-8")
     sentences = {each.__name__: each(outcomes) for each in SENTENCES}
 
@@ -46,9 +46,19 @@ def page(record: Sequence[Outcome]) -> str:
 
 
 def split(record: Sequence[Outcome]) -> tuple[Sequence[Outcome], Sequence[Outcome]]:
-    """The runs of the comparison, and those with the further kinds of disturbances."""
+    """The runs of the comparison, and those with the further kinds of disturbances, without the seeds held out."""
+    seen = [each for each in record if not held_out(each.job.seed)]
+    further = [each for each in seen if is_further(each.job.seed)]
+    return [each for each in seen if not is_further(each.job.seed)], further
+
+
+def halves_tables(record: Sequence[Outcome]) -> dict[str, Callable[[], Table]]:
+    """The tables of the seeds to tune with beside those held out."""
     further = [each for each in record if is_further(each.job.seed)]
-    return [each for each in record if not is_further(each.job.seed)], further
+    return {
+        "halves": lambda: success.halves_table([each for each in record if not is_further(each.job.seed)]),
+        "further_halves": lambda: success.halves_table(further),
+    }
 
 
 def further_tables(further: Sequence[Outcome]) -> dict[str, Callable[[], Table]]:
@@ -56,7 +66,6 @@ def further_tables(further: Sequence[Outcome]) -> dict[str, Callable[[], Table]]
     return {
         "further": lambda: success.further_table(further),
         "further_outcomes": lambda: success.outcome_table(further),
-        "further_halves": lambda: success.halves_table(further),
     }
 
 
@@ -75,7 +84,6 @@ def all_tables(outcomes: Sequence[Outcome]) -> dict[str, Callable[[], Table]]:
         "equal": lambda: comparison.comparison_table(outcomes, PATIENT),
         "ends": lambda: comparison.ends_table(outcomes),
         "outcomes": lambda: success.outcome_table(outcomes),
-        "halves": lambda: success.halves_table(outcomes),
         "patrol_by_kind": lambda: success.kind_table(outcomes, "patrol"),
         "house_cleaning_by_kind": lambda: success.kind_table(outcomes, "house_cleaning"),
     }

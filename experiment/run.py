@@ -1,5 +1,6 @@
 """Run the experiment, and write its page: python experiment/run.py
 
+With ``--journal FILE``, each run is written to the file when it ends, and an interrupted experiment continues from there.
 With ``--quick``, repeat some of the recorded runs, and check that they and the page are as recorded.
 """
 
@@ -11,14 +12,14 @@ from pathlib import Path
 from typing import Any
 
 import sizes
-from disturbed_runs import Job, Outcome, further_jobs, jobs, run_all
+from disturbed_runs import Job, Outcome, further_jobs, held_out_jobs, jobs, run_all
 from outcomes import Damage
 from page import page, summary
 
 DOCS = Path(__file__).parents[1] / "docs"
 PAGE, RECORD, IMAGES = DOCS / "experiment.md", DOCS / "experiment.json", DOCS / "images"
 README = DOCS.parent / "README.md"
-RUNS, FURTHER_RUNS, QUICK_RUNS = 50, 20, 2
+RUNS, FURTHER_RUNS, FURTHER_HELD_OUT, QUICK_RUNS = 50, 20, 10, 2
 
 
 def main() -> int:
@@ -30,13 +31,30 @@ def main() -> int:
     parser.add_argument("--page", action="store_true", help="write the page anew from the recorded runs")
     parser.add_argument("--runs", type=int, default=RUNS, help=f"runs of each side (default {RUNS})")
     parser.add_argument("--workers", type=int, help="runs at the same time (default: the processors)")
+    parser.add_argument("--journal", type=Path, help="file of the runs made so far, to continue from")
     given = parser.parse_args()
     if given.quick:
         return check()
     if not given.page:
         wanted = jobs(range(1, given.runs + 1)) + further_jobs(FURTHER_RUNS)
-        RECORD.write_text(as_json(run_all(wanted, given.workers)), encoding="utf-8")
+        wanted += held_out_jobs(given.runs, FURTHER_HELD_OUT)
+        RECORD.write_text(as_json(recorded(wanted, given.journal, given.workers)), encoding="utf-8")
     return write(from_json(RECORD.read_text(encoding="utf-8")))
+
+
+def recorded(wanted: list[Job], journal: Path | None, workers: int | None) -> list[Outcome]:
+    """Return the outcomes of runs; those that a journal has are not made again, and the others are added to it."""
+    if journal is None:
+        return list(run_all(wanted, workers))
+    journal.touch()
+    known = {
+        each.job: each for line in journal.read_text("utf-8").splitlines() for each in from_json(f"[{line}]")
+    }
+    with journal.open("a", encoding="utf-8") as file:
+        for each in run_all([job for job in wanted if job not in known], workers):
+            known[each.job] = each
+            print(as_line(each), file=file, flush=True)
+    return [known[job] for job in wanted]
 
 
 def write(outcomes: Sequence[Outcome]) -> int:
@@ -75,8 +93,12 @@ def check() -> int:
 
 def as_json(outcomes: Sequence[Outcome]) -> str:
     """The record of runs: one line for each."""
-    rows = [json.dumps([each.job, each[1:-1], each.damage]) for each in outcomes]
-    return "[\n" + ",\n".join(rows) + "\n]\n"
+    return "[\n" + ",\n".join(map(as_line, outcomes)) + "\n]\n"
+
+
+def as_line(outcome: Outcome) -> str:
+    """A run, as JSON."""
+    return json.dumps([outcome.job, outcome[1:-1], outcome.damage])
 
 
 def from_json(text: str) -> list[Outcome]:

@@ -54,13 +54,14 @@ def outcome_table(outcomes: Runs) -> Table:
 
 
 def halves_table(outcomes: Runs) -> Table:
-    """A row for each side of each scenario: how its runs ended, by the half that their seeds belong to."""
+    """A row for each side of each scenario: how its runs ended, with seeds that are tuned with, and with fresh ones."""
     rows = []
     for name, side, runs in _by_side(outcomes):
         halves: dict[bool, list[Outcome]] = {False: [], True: []}
         for each in runs:
-            halves[held_out(name, each.job.seed)].append(each)
-        rows.append((name, side, *map(ends_of, halves.values())))
+            halves[held_out(each.job.seed)].append(each)
+        if halves[True]:
+            rows.append((name, side, *map(ends_of, halves.values())))
     return Table("Halves", ("scenario", "side", "seeds to tune with", "seeds held out"), tuple(rows))
 
 

@@ -10,7 +10,7 @@ import os
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
 
-from disturbances import FURTHER, FURTHER_KINDS, KINDS, faults_for, held_out, kind_of
+from disturbances import FURTHER, FURTHER_KINDS, KINDS, SEEN, faults_for, kind_of
 from disturbed_runs import AGENTS, ALL, SIDES, Job, Outcome, judged, run
 
 
@@ -29,17 +29,16 @@ def main() -> None:
     parser.add_argument(
         "--further", action="store_true", help=f"the further kinds of disturbances: seeds from {FURTHER + 1}"
     )
-    parser.add_argument("--held-out", action="store_true", help="with the seeds that are held out")
+    parser.add_argument("--held-out", action="store_true", help=f"seeds from {SEEN + 1}, which are held out")
     parser.add_argument(
         "--lines", type=int, default=3, help="last lines of output to print (default 3; 0 for all)"
     )
     parser.add_argument("--workers", type=int, default=os.cpu_count(), help="runs at the same time")
     given = parser.parse_args()
-    first = FURTHER + 1 if given.further else 1
+    first = (FURTHER if given.further else 0) + (SEEN if given.held_out else 0) + 1
     wanted = [
         Job(given.scenario, given.side, seed)
         for seed in given.seed or range(first, first + given.runs)
-        if given.held_out or given.seed or not held_out(given.scenario, seed)
         if not given.kind or kind_of(given.scenario, seed) in given.kind
     ]
     with ProcessPoolExecutor(given.workers) as pool:

@@ -14,9 +14,30 @@ from jacaros.testing import RunResult
 sys.path.insert(0, str(EXAMPLES.parent / "experiment"))
 
 from comparison import after_the_end, compared, ends_table, fewer, fisher, mcnemar, significance
-from disturbances import FURTHER, FURTHER_KINDS, KINDS, faults_for, held_out, kind_of, kinds_for
-from disturbed_runs import AGENTS, BASELINE, PATIENCE, PATIENT, Job, Outcome, run_one, world_of
+from disturbances import (
+    FURTHER,
+    FURTHER_KINDS,
+    KINDS,
+    SEEN,
+    faults_for,
+    held_out,
+    is_further,
+    kind_of,
+    kinds_for,
+)
+from disturbed_runs import (
+    AGENTS,
+    BASELINE,
+    PATIENCE,
+    PATIENT,
+    Job,
+    Outcome,
+    held_out_jobs,
+    run_one,
+    world_of,
+)
 from outcomes import AS_IF_DONE, DONE, HUNG, TOLD, damage, end_of, told_at
+from run import as_line, from_json, recorded
 from scenarios import FURTHER_SCENARIOS, SCENARIOS
 from success import further_table, halves_table
 
@@ -51,12 +72,11 @@ def test_every_kind_occurs_and_takes_its_turn() -> None:
 
 
 @pytest.mark.parametrize("name", SCENARIOS)
-def test_each_half_of_the_seeds_has_all_kinds(name: str) -> None:
-    halves: dict[bool, list[str]] = {False: [], True: []}
-    for seed in range(1, 51):
-        halves[held_out(name, seed)].append(kind_of(name, seed))
-    assert set(halves[False]) == set(halves[True]) == set(kinds_for(name))
-    assert abs(len(halves[False]) - len(halves[True])) <= len(kinds_for(name))
+def test_the_seeds_held_out_have_all_kinds(name: str) -> None:
+    fresh = {job.seed for job in held_out_jobs(50, 10) if job.scenario == name}
+    assert all(map(held_out, fresh))
+    assert {kind_of(name, seed) for seed in fresh if not is_further(seed)} == set(kinds_for(name))
+    assert not any(map(held_out, (*range(1, 51), *range(FURTHER + 1, FURTHER + 21))))
 
 
 def test_a_seed_gives_the_same_faults_and_another_seed_others() -> None:
@@ -157,7 +177,18 @@ def test_further_runs_are_counted_by_kind_and_by_half() -> None:
         ("square", "lost_localisation", "2 / 0 / 0 / 0"),
         ("square", "person_in_the_way", "0 / 0 / 2 / 0"),
     )
-    assert halves_table(runs).rows == (("square", AGENTS, "1 / 0 / 1 / 0", "1 / 0 / 1 / 0"),)
+    fresh = outcome(FURTHER + SEEN + 1, AGENTS, True)
+    assert halves_table([*runs, fresh]).rows == (("square", AGENTS, "2 / 0 / 2 / 0", "1 / 0 / 0 / 0"),)
+
+
+def test_an_interrupted_experiment_continues_from_its_journal(tmp_path: Path) -> None:
+    journal = tmp_path / "runs.jsonl"
+    known, new = outcome(1, AGENTS, True), Job("out_and_back", AGENTS, 3)
+    journal.write_text(f"{as_line(known)}\n", encoding="utf-8")
+    found = recorded([new, known.job], journal, 1)
+    assert found[1] == known
+    assert (found[0].job, found[0].end) == (new, TOLD)
+    assert from_json(f"[{','.join(journal.read_text('utf-8').splitlines())}]") == [known, found[0]]
 
 
 @pytest.mark.slow
