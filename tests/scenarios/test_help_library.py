@@ -45,3 +45,4 @@ def test_help_ends_as_the_person_says(tmp_path: Path, operator: str, advice: str
     (tmp_path / "robot.asl").write_text(PROGRAM.replace("OPERATOR", operator) + advice)
     ran = run_project(tmp_path / "robot.asl", until_idle=True)
     assert ran.of("robot") == lines
+    assert ran.ground_truth is None, "a program without robots opens no world"

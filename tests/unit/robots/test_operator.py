@@ -260,3 +260,14 @@ async def test_a_line_answers_the_oldest_question(lab: Lab, artifact: ArtifactId
     await typed.type(lab, None)
     await asked(lab, artifact)
     assert (typed.waiting, third.outcome) == ([], None)  # the end of the input: nothing more is read
+
+
+async def test_operators_of_one_name_in_two_workspaces_have_topics_of_their_own(
+    lab: Lab, artifact: ArtifactId
+) -> None:
+    lab.workspace = lab.environment.create_workspace("/main/lab")
+    there = await lab.make(Operator, name=artifact.name)
+    node = await lab.node("panel")
+    here, theirs = Questions(node, artifact.name), Questions(node, f"lab/{artifact.name}")
+    await asked(lab, there)
+    assert (here.shown, len(theirs.shown[-1])) == ([], 1)

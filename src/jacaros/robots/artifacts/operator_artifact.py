@@ -69,7 +69,8 @@ class Operator(RosArtifact):
     answer means an option by its text or its number, from 1; a question without options accepts any text. An answer
     that is not an option is refused with the reason, and the question stays open.
 
-    ROS, below the artifact's name (each character that ROS does not allow is ``_``), such as ``operator/``:
+    ROS, below the artifact's name (each character that ROS does not allow is ``_``), such as ``operator/``, or
+    ``lab/operator/`` in a workspace ``/main/lab``; in a program without robots only if its project names a world:
     ``questions`` has the open questions (``std_msgs/msg/String``, latched), a list in JSON of objects with ``question``
     (its number), ``agent``, ``text``, ``options``, ``services``, and ``refused`` (why the last answer from ROS was
     refused). Publish ``{"question": 1, "answer": "kitchen"}`` on ``answer``, or call the service
@@ -98,9 +99,11 @@ class Operator(RosArtifact):
         self._open: dict[int, _Question] = {}
         self._lingering: list[Service] = []
         self.at_dispose(self._close_services)
-        self._ros_name = re.sub(r"^(?=\d)|[^A-Za-z0-9_]", "_", self.name)
+        names = self.id.path.removeprefix("/main/").strip("/").split("/")
+        self._ros_name = "/".join(re.sub(r"^(?=\d)|[^A-Za-z0-9_]", "_", each) for each in names)
         self._topic = None
-        if self.resources.get("ros") is not None:
+        # Where nobody has opened a graph, nobody listens: do not open the default world for a question.
+        if not self.resources.get("graph_unused") and self.resources.get("ros") is not None:
             self._topic = self.publisher(f"{self._ros_name}/questions", TEXT, LATCHED)
             heard = f"{self._ros_name}/answer"
             self.kept(self.ros.subscription(self.robot_topic(heard), TEXT, self._take_message))

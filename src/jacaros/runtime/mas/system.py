@@ -271,6 +271,7 @@ class System:
             resources = Resources(
                 {
                     "ros": self.ros.backend,
+                    "graph_unused": lambda: self.ros.joined is None,
                     "console": lambda: self.console.print,
                     "random": lambda: random,
                     "input": lambda: self.input,
