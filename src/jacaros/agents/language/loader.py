@@ -16,10 +16,12 @@ from jacaros.agents.language import nodes
 from jacaros.agents.language.cursor import ProgramNames, SyntaxPanic
 from jacaros.agents.language.diagnostics import TEXT, AslError, Diagnostic, SourceFile, problem
 from jacaros.agents.language.directives import DirectiveProcessor, ReadSource
+from jacaros.agents.language.lowering import lower_value
 from jacaros.agents.language.nodes import Declaration, shape
 from jacaros.agents.language.plan_parser import PlanParser
 from jacaros.agents.language.term_parser import Namespaces
 from jacaros.agents.terms.functions import FunctionNames
+from jacaros.agents.terms.operators import ArithmeticFault
 
 T = TypeVar("T")
 
@@ -225,7 +227,7 @@ def _ordered(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
 
 
 def _check_labels(plans: list[nodes.Plan], diagnostics: list[Diagnostic]) -> None:
-    """Report labels that two different plans share, and drop repetitions of the same plan from *plans*.
+    """Report labels without a value or of two different plans, and drop repetitions of the same plan from *plans*.
 
     Repetitions occur when a file is included twice.
     """
@@ -236,6 +238,11 @@ def _check_labels(plans: list[nodes.Plan], diagnostics: list[Diagnostic]) -> Non
             _check_labels(list(plan.subplans), diagnostics)
         if not isinstance(plan.label, nodes.Literal):
             continue
+        try:
+            lower_value(plan.label)
+        except ArithmeticFault as fault:
+            told = f"cannot evaluate the annotations of a label: {fault}"
+            diagnostics.append(problem("wrong-label", told, plan.label.span, "write its value"))
         first = known.setdefault((plan.label.namespace, plan.label.functor), plan)
         if first is plan:
             continue

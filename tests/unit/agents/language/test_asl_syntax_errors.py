@@ -137,6 +137,7 @@ def go(): pass => 1: Python keyword `def` in an agent program => this is an agen
 !!g. => 1: expected one `!` before an initial goal => write `!goal.`
 p(a).q(b). => 1: `.q` is read as one word => put a blank or a line end after the final
 @X +!g. => 1: expected an atom as label, optionally with annotations => write `@stop[atomic]
+@p[x(1 div 0)] +!g. => 1: cannot evaluate the annotations of a label: integer division by zero => write
 /* never closed⏎ p. => 1: unterminated comment => end it with `*/`
 +!g <- a. } => 1: expected a belief, a goal or a plan, found `}`
 +!g <- a }. => 1: unmatched `}`
