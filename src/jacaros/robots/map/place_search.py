@@ -17,7 +17,7 @@ LEAST = 0.75
 WORSE = 0.2
 """Sum of the shares, of several scans, by which a possible place may match worse than the best one."""
 
-MOST_FITS, MOST_PLACES = 10_000, 40
+MOST_FITS, MOST_PLACES = 20_000, 200
 """Numbers of poses and of places above which a scan does not say enough."""
 
 ONE_PLACE = (0.3, 0.3)
