@@ -137,18 +137,17 @@ def master(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Master]:
 @pytest.fixture(params=("ros1", "ros2"))
 def bridged(request: pytest.FixtureRequest) -> Iterator[BehindBridge]:
     """A bridge of this test's own; the peers ``robot`` and ``other_robot`` are nodes behind it, the others are clients."""
-    need("rosbridge", request.config)
-    made = BehindBridge(
-        f"rosbridge-{request.param}", BridgeServer(request.param), native=("robot", "other_robot")
-    )
-    yield made
-    made.close()
+    yield from own_bridge(request, request.param)
 
 
 @pytest.fixture
 def robot_of_ros2(request: pytest.FixtureRequest) -> Iterator[BehindBridge]:
-    """The same for ROS 2 alone."""
+    """The same for ROS 2 alone; the parameter is an option of the server."""
+    yield from own_bridge(request, "ros2", *([request.param] if hasattr(request, "param") else ()))
+
+
+def own_bridge(request: pytest.FixtureRequest, *server: str) -> Iterator[BehindBridge]:
     need("rosbridge", request.config)
-    made = BehindBridge("rosbridge-ros2", BridgeServer("ros2"), native=("robot",))
+    made = BehindBridge(f"rosbridge-{server[0]}", BridgeServer(*server), native=("robot", "other_robot"))
     yield made
     made.close()

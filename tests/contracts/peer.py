@@ -15,6 +15,7 @@ import sys
 import threading
 import time
 from collections import defaultdict
+from collections.abc import Callable
 from typing import Any
 
 from peer_actions import ActionCommands
@@ -347,7 +348,7 @@ async def obey(peer: Peer, commands: "asyncio.Queue[dict[str, Any] | None]") -> 
             reply({"id": command["id"], "result": None})
             end(ending)
             return
-        task = asyncio.get_running_loop().create_task(do(peer, command))
+        task = asyncio.get_running_loop().create_task(answer(command, getattr(peer, command["do"])))
         pending.add(task)
         task.add_done_callback(pending.discard)
 
@@ -362,10 +363,10 @@ def end(how: str) -> None:
         pass
 
 
-async def do(peer: Peer, command: dict[str, Any]) -> None:
-    """Do one command and answer."""
+async def answer(command: dict[str, Any], work: Callable[..., Any]) -> None:
+    """Do what one command says and answer."""
     try:
-        result = getattr(peer, command["do"])(*command["args"], **command["kwargs"])
+        result = work(*command["args"], **command["kwargs"])
         if inspect.isawaitable(result):
             result = await result
         reply({"id": command["id"], "result": result})
@@ -383,11 +384,10 @@ def reply(answer: dict[str, Any]) -> None:
     print("@" + json.dumps(answer), flush=True)
 
 
-async def main(kind: str, name: str, namespace: str = "") -> None:
-    """Run a peer that is controlled through standard input."""
+def reading() -> "asyncio.Queue[dict[str, Any] | None]":
+    """Return the commands from standard input; None is its end."""
     loop = asyncio.get_running_loop()
     commands: asyncio.Queue[dict[str, Any] | None] = asyncio.Queue()
-    peer = Peer(kind, WallClock(), name, namespace, **json.loads(os.environ.get("PEER_OPTIONS", "{}")))
 
     def read() -> None:
         for line in sys.stdin:
@@ -395,7 +395,13 @@ async def main(kind: str, name: str, namespace: str = "") -> None:
         post(loop, commands.put_nowait, None)
 
     threading.Thread(target=read, daemon=True).start()
-    await obey(peer, commands)
+    return commands
+
+
+async def main(kind: str, name: str, namespace: str = "") -> None:
+    """Run a peer that is controlled through standard input."""
+    peer = Peer(kind, WallClock(), name, namespace, **json.loads(os.environ.get("PEER_OPTIONS", "{}")))
+    await obey(peer, reading())
 
 
 if __name__ == "__main__":

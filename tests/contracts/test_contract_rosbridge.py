@@ -10,7 +10,6 @@ from typing import Any
 
 import pytest
 from bridges import BehindBridge, BridgeServer, heard, talking
-from presence import need
 
 from jacaros.robots.ros.errors import (
     CallFailed,
@@ -57,28 +56,22 @@ def test_a_restarted_server_is_found_again_and_gets_everything_again(bridged: Be
     bridged.wait_until(heard(robot, "/map", "the map"), "the latched message is there again")
 
 
-def test_a_server_that_starts_later_is_awaited(request: pytest.FixtureRequest) -> None:
-    need("rosbridge", request.config)
-    first = BridgeServer("ros2")
+def test_a_server_that_starts_later_is_awaited(robot_of_ros2: BehindBridge) -> None:
+    graph, first = robot_of_ros2, robot_of_ros2.server
     first.kill()
-    graph = BehindBridge("rosbridge-ros2", first)
-    try:
-        client = graph.peer("client")
-        assert client.connected() is False
-        client.subscribe("/a", STRING)
-        client.advertise("/a", STRING)
-        graph.wait_until(
-            lambda: any("rosbridge_websocket_launch.xml" in line for line in client.log()),
-            "the help is logged",
-        )
-        graph.server = BridgeServer("ros2", port=first.port)
-        graph.wait_until(client.connected, "the server is found")
-        graph.wait_until(lambda: client.subscription_count("/a") == 1, "the topic is joined")
-        client.publish("/a", {"data": "x"})
-        graph.wait_until(heard(client, "/a", "x"), "the message arrives")
-        assert any(line.startswith("found the rosbridge server") for line in client.log())
-    finally:
-        graph.close()
+    client = graph.peer("client")
+    assert client.connected() is False
+    client.subscribe("/a", STRING)
+    client.advertise("/a", STRING)
+    graph.wait_until(
+        lambda: any("rosbridge_websocket_launch.xml" in line for line in client.log()), "the help is logged"
+    )
+    graph.server = BridgeServer("ros2", port=first.port)
+    graph.wait_until(client.connected, "the server is found")
+    graph.wait_until(lambda: client.subscription_count("/a") == 1, "the topic is joined")
+    client.publish("/a", {"data": "x"})
+    graph.wait_until(heard(client, "/a", "x"), "the message arrives")
+    assert any(line.startswith("found the rosbridge server") for line in client.log())
 
 
 def test_a_frozen_network_is_noticed_and_survived(bridged: BehindBridge) -> None:
@@ -142,20 +135,16 @@ def test_an_action_server_that_goes_is_noticed_between_two_goals(robot_of_ros2: 
     graph.wait_until(lambda: not client.action_ready("/count"), "the loss is noticed")
 
 
-def test_a_goal_without_any_sign_fails(request: pytest.FixtureRequest) -> None:
+@pytest.mark.parametrize("robot_of_ros2", ["--without-actions"], indirect=True)
+def test_a_goal_without_any_sign_fails(robot_of_ros2: BehindBridge) -> None:
     """Servers older than actions say nothing at all of an operation that they do not know."""
-    need("rosbridge", request.config)
-    graph = BehindBridge("rosbridge-ros2", BridgeServer("ros2", "--without-actions"), native=("robot",))
-    try:
-        robot, client = graph.peer("robot"), graph.peer("client")
-        robot.serve_action("/count")
-        with pytest.raises(
-            CallFailed, match=r"no answer about the goal .* does this rosbridge server support actions"
-        ):
-            client.send_goal("g", "/count", {"target": 2, "period": 0.01}, timeout=60)
-        assert robot.deeds("/count") == []
-    finally:
-        graph.close()
+    robot, client = robot_of_ros2.peer("robot"), robot_of_ros2.peer("client")
+    robot.serve_action("/count")
+    with pytest.raises(
+        CallFailed, match=r"no answer about the goal .* does this rosbridge server support actions"
+    ):
+        client.send_goal("g", "/count", {"target": 2, "period": 0.01}, timeout=60)
+    assert robot.deeds("/count") == []
 
 
 def test_a_goal_is_cancelled_when_the_program_ends(bridged: BehindBridge) -> None:
@@ -210,16 +199,9 @@ def test_a_type_that_the_robot_lacks_is_reported(robot_of_ros2: BehindBridge, tm
     )
 
 
-def test_a_refused_message_is_logged_once_if_the_server_reports_it(request: pytest.FixtureRequest) -> None:
-    need("rosbridge", request.config)
-    bridged = BehindBridge("rosbridge-ros2", BridgeServer("ros2", "--talkative"), native=("robot",))
-    try:
-        _a_refused_message_is_told_once(bridged)
-    finally:
-        bridged.close()
-
-
-def _a_refused_message_is_told_once(bridged: BehindBridge) -> None:
+@pytest.mark.parametrize("robot_of_ros2", ["--talkative"], indirect=True)
+def test_a_refused_message_is_logged_once_if_the_server_reports_it(robot_of_ros2: BehindBridge) -> None:
+    bridged = robot_of_ros2
     robot, client = bridged.peer("robot"), bridged.peer("client")
     robot.subscribe("/a", "geometry_msgs/msg/Twist")
     client.advertise("/a", STRING)
@@ -245,20 +227,16 @@ def test_unsupported_requests_have_clear_errors(robot_of_ros2: BehindBridge) -> 
         client.subscribe("/a", "nowhere_msgs/msg/Nothing")
 
 
-def test_parameters_of_a_ros1_master(request: pytest.FixtureRequest) -> None:
-    need("rosbridge", request.config)
-    graph = BehindBridge("rosbridge-ros1", BridgeServer("ros1"))
-    try:
-        client = graph.peer("client")
-        client.set_parameter("speed", 0.5)
-        client.set_parameter("names", ["a", "b"], "/other")
-        assert client.get_parameter("speed") == 0.5
-        assert client.parameter_names() == ["speed"]
-        assert client.get_parameter("names", "/other") == ["a", "b"]
-        with pytest.raises(ParameterUnknown):
-            client.get_parameter("weight")
-    finally:
-        graph.close()
+@pytest.mark.parametrize("bridged", ["ros1"], indirect=True)
+def test_parameters_of_a_ros1_master(bridged: BehindBridge) -> None:
+    client = bridged.peer("client")
+    client.set_parameter("speed", 0.5)
+    client.set_parameter("names", ["a", "b"], "/other")
+    assert client.get_parameter("speed") == 0.5
+    assert client.parameter_names() == ["speed"]
+    assert client.get_parameter("names", "/other") == ["a", "b"]
+    with pytest.raises(ParameterUnknown):
+        client.get_parameter("weight")
 
 
 def test_a_topic_of_1_khz_does_not_starve_the_loop(robot_of_ros2: BehindBridge) -> None:
@@ -344,44 +322,37 @@ def test_roslibpy_understands_us_and_we_understand_it(bridged: BehindBridge, ros
     bridged.wait_until(lambda: got == ["welcome"], "ours arrives")
 
 
-def test_goals_between_us_and_roslibpys_actionlib(request: pytest.FixtureRequest) -> None:
-    need("rosbridge", request.config)
+@pytest.mark.parametrize("bridged", ["ros1"], indirect=True)
+def test_goals_between_us_and_roslibpys_actionlib(bridged: BehindBridge, roslibpy_client: Any) -> None:
     import roslibpy
     from roslibpy.ros1 import actionlib
 
-    graph = BehindBridge("rosbridge-ros1", BridgeServer("ros1"))
-    other = roslibpy.Ros(graph.server.url, transport="asyncio")
-    other.run(20)
-    try:
-        peer = graph.peer("client")
-        peer.serve_action("/ours")
-        graph.wait_until(lambda: peer.action_ready("/ours"), "our server is there")
-        client = actionlib.ActionClient(other, "/ours", "jacaros_interfaces/CountAction")
-        goal = actionlib.Goal(client, roslibpy.Message({"target": 3, "period": 0.01}))
-        seen: list[int] = []
-        goal.on("feedback", lambda feedback: seen.append(feedback["current"]))
-        goal.send()
-        assert goal.wait(20)["last"] == 3
-        assert seen == [1, 2, 3]
+    peer = bridged.peer("client")
+    peer.serve_action("/ours")
+    bridged.wait_until(lambda: peer.action_ready("/ours"), "our server is there")
+    client = actionlib.ActionClient(roslibpy_client, "/ours", "jacaros_interfaces/CountAction")
+    goal = actionlib.Goal(client, roslibpy.Message({"target": 3, "period": 0.01}))
+    seen: list[int] = []
+    goal.on("feedback", lambda feedback: seen.append(feedback["current"]))
+    goal.send()
+    assert goal.wait(20)["last"] == 3
+    assert seen == [1, 2, 3]
 
-        def execute(goal: Any) -> None:
-            for number in range(goal["target"]):
-                server.send_feedback({"current": number})
-                time.sleep(0.01)
-            server.set_succeeded({"last": goal["target"], "message": "theirs"})
+    def execute(goal: Any) -> None:
+        for number in range(goal["target"]):
+            server.send_feedback({"current": number})
+            time.sleep(0.01)
+        server.set_succeeded({"last": goal["target"], "message": "theirs"})
 
-        server = actionlib.SimpleActionServer(other, "/theirs", "jacaros_interfaces/CountAction")
-        server.start(execute)
-        peer.send_goal("g", "/theirs", {"target": 4, "period": 0.0}, timeout=60)
-        assert peer.outcome("g", timeout=60) == {
-            "status": "succeeded",
-            "result": {"last": 4, "message": "theirs"},
-            "text": "theirs",
-        }
-        assert peer.feedback("g") == [0, 1, 2, 3]
-    finally:
-        other.close()
-        graph.close()
+    server = actionlib.SimpleActionServer(roslibpy_client, "/theirs", "jacaros_interfaces/CountAction")
+    server.start(execute)
+    peer.send_goal("g", "/theirs", {"target": 4, "period": 0.0}, timeout=60)
+    assert peer.outcome("g", timeout=60) == {
+        "status": "succeeded",
+        "result": {"last": 4, "message": "theirs"},
+        "text": "theirs",
+    }
+    assert peer.feedback("g") == [0, 1, 2, 3]
 
 
 def test_a_server_without_rosapi_is_logged_and_taken_for_ros2(robot_of_ros2: BehindBridge) -> None:

@@ -8,13 +8,11 @@ from typing import Any
 from conversion import short
 from parameters import ParameterServices
 
-from jacaros.robots.ros.errors import CallFailed, JacarosError, ParameterError
+from jacaros.robots.ros.errors import CallFailed, JacarosError
 from jacaros.robots.ros.interfaces import BUILT_IN, split
 from jacaros.robots.ros.node import Node
 
 ACTIONLIB = ("goal", "cancel", "feedback", "result", "status")
-NEEDED = 0.5
-"""Seconds for asking a node of the graph for its parameters."""
 
 
 class RosApi:
@@ -40,13 +38,13 @@ class RosApi:
         self._services: dict[str, Callable[..., Any]] = {
             name: getattr(self, "_services_list" if name == "services" else f"_{name}")
             for name in (
-                *("topics", "services", "nodes", "publishers", "subscribers", "topic_type", "service_type"),
-                *("action_servers", "get_param", "set_param", "has_param", "get_param_names"),
+                *("topics", "services", "nodes", "publishers", "subscribers", "service_type"),
+                *(("get_param", "set_param", "get_param_names") if ros1 else ("action_type",)),
+                "action_servers",
             )
         }
         if not ros1:
             self._services["get_ros_version"] = lambda: {"version": 2, "distro": "jazzy"}
-            self._services["action_type"] = self._action_type
 
     @property
     def names(self) -> list[str]:
@@ -94,10 +92,6 @@ class RosApi:
         info = (await self._contents()).topics.get(topic)
         return {"subscribers": sorted({each.node for each in info.subscriptions}) if info else []}
 
-    async def _topic_type(self, topic: str) -> dict[str, Any]:
-        info = (await self._contents()).topics.get(topic)
-        return {"type": self._written(info.types[0]) if info else ""}
-
     async def _service_type(self, service: str) -> dict[str, Any]:
         found = (await self._contents()).services.get(service, "")
         if not found and not self._ros1:
@@ -117,36 +111,15 @@ class RosApi:
     async def _action_type(self, action: str) -> dict[str, Any]:
         return {"type": (await self._contents()).actions.get(action, "")}
 
-    async def _get_param(self, name: str, default_value: str = "") -> dict[str, Any]:
-        if self._ros1:
-            return {"value": json.dumps(self.master[name]) if name in self.master else default_value}
-        node, _, parameter = name.partition(":")
-        try:
-            return {"value": json.dumps(await self._node.parameters(node).get(parameter, NEEDED))}
-        except (ParameterError, CallFailed):
-            return {"value": default_value}
+    def _get_param(self, name: str, default_value: str = "") -> dict[str, Any]:
+        return {"value": json.dumps(self.master[name]) if name in self.master else default_value}
 
-    async def _set_param(self, name: str, value: str) -> dict[str, Any]:
-        if self._ros1:
-            self.master[name] = json.loads(value)
-            return {}
-        node, _, parameter = name.partition(":")
-        try:
-            await self._node.parameters(node).set(parameter, json.loads(value), NEEDED)
-        except ParameterError as problem:
-            return {"successful": False, "reason": str(problem)}
-        return {"successful": True, "reason": ""}
+    def _set_param(self, name: str, value: str) -> dict[str, Any]:
+        self.master[name] = json.loads(value)
+        return {}
 
-    async def _has_param(self, name: str) -> dict[str, Any]:
-        return {"exists": (await self._get_param(name, ""))["value"] != ""}
-
-    async def _get_param_names(self) -> dict[str, Any]:
-        if self._ros1:
-            return {"names": sorted(self.master)}
-        names = []
-        for node in (await self._contents()).nodes:
-            names += [f"{node}:{name}" for name in await self._node.parameters(node).names(NEEDED)]
-        return {"names": names}
+    def _get_param_names(self) -> dict[str, Any]:
+        return {"names": sorted(self.master)}
 
     def _written(self, type_name: str) -> str:
         return short(type_name) if self._ros1 and type_name else type_name

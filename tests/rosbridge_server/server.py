@@ -1,6 +1,6 @@
 """A rosbridge server for tests, in front of a ROS graph inside its process.
 
-    python server.py [--port 0] [--flavour ros1|ros2] [--interfaces FOLDER]
+    python server.py [--port 0] [--flavour ros1|ros2]
 
 It behaves like rosbridge_suite: version 0.11 for ROS 1, version 2 for ROS 2, each with rosapi beside it.  What it
 says is the line ``@{"port": N}``.  Then it takes commands as JSON lines on standard input, like the peers of the
@@ -10,10 +10,8 @@ stopped, started and frozen while the graph lives on, as on a robot.
 
 import argparse
 import asyncio
-import json
 import sys
 import tempfile
-import threading
 from collections import deque
 from collections.abc import Callable, Coroutine, Mapping
 from functools import partial
@@ -26,12 +24,11 @@ from autobahn.asyncio.websocket import WebSocketServerFactory, WebSocketServerPr
 from connection import Connection
 from goals import SentGoals
 from parameters import ParameterServices
-from peer import Peer
+from peer import Peer, answer, reading, reply
 from rosapi import RosApi, write_ros1_types
 
 from jacaros.robots.ros.drivers.memory.backend import MemoryBackend
 from jacaros.robots.ros.drivers.memory.graph import MemoryGraph
-from jacaros.robots.ros.handoff import post
 from jacaros.robots.ros.node import NodeSettings
 from jacaros.robots.ros.parameter_services import ParameterCallback, ParameterListeners
 from jacaros.runtime.clock import WallClock, run
@@ -155,66 +152,41 @@ class _ParameterEvents(ParameterListeners):
                 connection.tell_parameters(self._bridge.parameters.event(node, changed))
 
 
-async def obey(bridge: Bridge, command: dict[str, Any], peers: dict[str, Peer]) -> Any:
-    """Do one command."""
+def action(bridge: Bridge, command: dict[str, Any], peers: dict[str, Peer]) -> Callable[..., Any]:
+    """Return what does a command."""
+
+    def say(text: str) -> None:
+        for connection in list(bridge.connections):
+            connection.say(text)
+
+    def add_node(*args: Any, **kwargs: Any) -> None:
+        peers[command["peer"]] = Peer("memory", WallClock(), *args, graph=bridge.graph, **kwargs)
+
     if command["peer"] in peers:
-        result = getattr(peers[command["peer"]], command["do"])(*command["args"], **command["kwargs"])
-        return await result if asyncio.iscoroutine(result) else result
-    match command["do"]:
-        case "stop":
-            bridge.stop()
-        case "start":
-            await bridge.start(bridge.port)
-        case "freeze":
-            bridge.freeze(True)
-        case "thaw":
-            bridge.freeze(False)
-        case "vanish":
-            bridge.graph.vanish(*command["args"])
-        case "say":
-            for connection in list(bridge.connections):
-                connection.say(*command["args"])
-        case "rosapi":
-            bridge.rosapi.running = command["args"][0]
-        case "rosapi_without":
-            bridge.rosapi.remove(*command["args"])
-        case "node":
-            made = Peer("memory", WallClock(), *command["args"], graph=bridge.graph, **command["kwargs"])
-            peers[command["peer"]] = made
-        case other:
-            raise ValueError(f"there is no command {other}")
-    return None
-
-
-def reply(answer: dict[str, Any]) -> None:
-    """Answer a command."""
-    print("@" + json.dumps(answer), flush=True)
+        return getattr(peers[command["peer"]], command["do"])
+    actions: dict[str, Callable[..., Any]] = {
+        "stop": bridge.stop,
+        "start": lambda: bridge.start(bridge.port),
+        "freeze": lambda: bridge.freeze(True),
+        "thaw": lambda: bridge.freeze(False),
+        "vanish": bridge.graph.vanish,
+        "say": say,
+        "rosapi": partial(setattr, bridge.rosapi, "running"),
+        "rosapi_without": bridge.rosapi.remove,
+        "node": add_node,
+    }
+    return actions[command["do"]]
 
 
 async def serve(port: int, make: Callable[[], Bridge]) -> None:
     """Run until standard input ends."""
-    loop = asyncio.get_running_loop()
     bridge, peers = make(), dict[str, Peer]()
     await bridge.node.start()
     await bridge.start(port)
     reply({"port": bridge.port})
-    commands: asyncio.Queue[dict[str, Any] | None] = asyncio.Queue()
-
-    def read() -> None:
-        for line in sys.stdin:
-            post(loop, commands.put_nowait, json.loads(line))
-        post(loop, commands.put_nowait, None)
-
-    async def do(command: dict[str, Any]) -> None:
-        try:
-            reply({"id": command["id"], "result": await obey(bridge, command, peers)})
-        except Exception as problem:
-            error = {"error": type(problem).__name__, "reason": getattr(problem, "reason", None)}
-            reply({"id": command["id"], "text": str(problem), **error})
-
-    threading.Thread(target=read, daemon=True).start()
+    commands = reading()
     while (command := await commands.get()) is not None:
-        bridge.begin(do(command))
+        bridge.begin(answer(command, action(bridge, command, peers)))
     for each in peers.values():
         await each.close()
     bridge.stop()
