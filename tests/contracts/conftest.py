@@ -128,10 +128,19 @@ def topic(own_name: str) -> str:
 @pytest.fixture
 def master(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Master]:
     """A ROS master of this test, not started yet."""
-    need("ros1", request.config)
+    if not is_wanted("ros1", request.config):
+        pytest.skip("no ROS 1 here; see test_contract_presence")
     made = Master(tmp_path)
     yield made
     made.close()
+
+
+@pytest.fixture
+def domain(tmp_path: Path, request: pytest.FixtureRequest) -> dict[str, str]:
+    """The environment of a ROS 2 domain of this test."""
+    if not is_wanted("ros2", request.config):
+        pytest.skip("no ROS 2 here; see test_contract_presence")
+    return ros2_environment(tmp_path)
 
 
 @pytest.fixture(params=("ros1", "ros2"))

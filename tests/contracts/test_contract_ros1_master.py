@@ -11,18 +11,12 @@ from typing import Any
 import pytest
 from graphs import InProcesses
 from masters import Master
-from presence import is_wanted
+from programs import run_program
 
 from jacaros.robots.ros.errors import ParameterUnknown, ServiceUnavailable
 from jacaros.robots.ros.qos import QoS
 
 pytestmark = [pytest.mark.ros1, pytest.mark.slow]
-
-
-@pytest.fixture(autouse=True)
-def _where_ros1_is(request: pytest.FixtureRequest) -> None:
-    if not is_wanted("ros1", request.config):
-        pytest.skip("no ROS 1 here; see test_contract_presence")
 
 
 @pytest.fixture
@@ -76,7 +70,7 @@ def test_an_early_message_that_cannot_be_serialised_does_not_silence_its_topic(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     # rospy serialises only with a connection, which at this moment is a race; so its publisher is a stand-in.
-    import rospy
+    rospy = pytest.importorskip("rospy", reason="no ROS 1 here; see test_contract_presence")
 
     from jacaros.robots.ros.drivers.ros1 import topics as ros1_topics
 
@@ -235,14 +229,7 @@ async def main():
     await one.close()
 run(main, WallClock())
 """
-    answer = subprocess.run(
-        [sys.executable, "-c", program],
-        env=os.environ | master.environment,
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    answer = run_program(program, master.environment)
     assert answer.stdout.startswith("RosError ROS 1 allows one node per process"), answer.stderr
     assert answer.returncode == 0
 
@@ -266,14 +253,7 @@ async def main():
     print("ended")
 run(main, WallClock())
 """
-    answer = subprocess.run(
-        [sys.executable, "-c", program],
-        env=os.environ | master.environment,
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    answer = run_program(program, master.environment)
     assert answer.stdout == "ended\n", answer.stderr
     assert answer.returncode == 0
 

@@ -1,12 +1,8 @@
 """ROS 1 alone: messages read on the loop, also where rospy itself listens in the same process."""
 
-import os
-import subprocess
-import sys
-
 import pytest
 from masters import Master
-from presence import is_wanted
+from programs import run_program
 
 pytestmark = [pytest.mark.ros1, pytest.mark.slow]
 
@@ -94,30 +90,16 @@ run(main, WallClock())
 """
 
 
-@pytest.fixture(autouse=True)
-def _where_ros1_is(request: pytest.FixtureRequest) -> None:
-    if not is_wanted("ros1", request.config):
-        pytest.skip("no ROS 1 here; see test_contract_presence")
-
-
 def output_of(program: str, master: Master) -> str:
-    answer = subprocess.run(
-        [sys.executable, "-c", program],
-        env=os.environ | master.environment,
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
+    master.start()
+    answer = run_program(program, master.environment)
     assert answer.returncode == 0, answer.stderr
     return answer.stdout
 
 
 def test_a_rospy_subscriber_in_the_same_process_receives_every_message(master: Master) -> None:
-    master.start()
     assert output_of(TOGETHER, master) == "both\n"
 
 
 def test_a_message_of_many_megabytes_comes_whole(master: Master) -> None:
-    master.start()
     assert output_of(LARGE, master) == "whole\n"

@@ -1,13 +1,10 @@
 """ROS 2 alone: the middleware's own reports do not end up among the agents' lines."""
 
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
-from presence import is_wanted, ros2_environment
+from programs import run_program
 
 pytestmark = pytest.mark.ros2
 
@@ -32,17 +29,8 @@ run(main, WallClock())
 """
 
 
-def test_logs_of_the_middleware_go_to_standard_error(tmp_path: Path, request: pytest.FixtureRequest) -> None:
-    if not is_wanted("ros2", request.config):
-        pytest.skip("no ROS 2 here; see test_contract_presence")
-    done = subprocess.run(
-        [sys.executable, "-c", PROGRAM],
-        env=os.environ | ros2_environment(tmp_path) | {"RCUTILS_LOGGING_USE_STDOUT": "1"},
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+def test_logs_of_the_middleware_go_to_standard_error(domain: dict[str, str]) -> None:
+    done = run_program(PROGRAM, domain | {"RCUTILS_LOGGING_USE_STDOUT": "1"})
     for name in re.findall(r"segment (fast(?:rtps|dds)_\w+)", done.stderr + done.stdout):
         Path("/dev/shm", name).unlink(missing_ok=True)  # the empty file that it could not enlarge
     assert done.returncode == 0, done.stderr

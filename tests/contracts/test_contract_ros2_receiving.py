@@ -1,13 +1,9 @@
 """ROS 2 alone: how messages are taken beside rclpy's executor, within one process."""
 
-import os
-import subprocess
-import sys
-from pathlib import Path
 from typing import Any
 
 import pytest
-from presence import is_wanted, ros2_environment
+from programs import run_program
 
 pytestmark = pytest.mark.ros2
 
@@ -52,27 +48,14 @@ print("done")
 """
 
 
-@pytest.fixture(autouse=True)
-def _ros2(request: pytest.FixtureRequest) -> None:
-    if not is_wanted("ros2", request.config):
-        pytest.skip("no ROS 2 here; see test_contract_presence")
-
-
-def passes(folder: Path, test: str, before: str = "") -> None:
-    done = subprocess.run(
-        [sys.executable, "-c", before + BEGIN + test + END],
-        env=os.environ | ros2_environment(folder),
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
+def passes(environment: dict[str, str], test: str, before: str = "") -> None:
+    done = run_program(before + BEGIN + test + END, environment)
     assert (done.returncode, done.stdout) == (0, "done\n"), done.stderr
 
 
-def test_an_unreadable_message_is_logged_once_and_the_next_is_received(tmp_path: Path) -> None:
+def test_an_unreadable_message_is_logged_once_and_the_next_is_received(domain: dict[str, str]) -> None:
     passes(
-        tmp_path,
+        domain,
         """
 left, genuine = 3, ros2_receiving.take_message
 
@@ -94,9 +77,9 @@ async def test(backend, publisher, hear):
     )
 
 
-def test_rclpys_executor_takes_over_where_the_wait_set_is_another_one(tmp_path: Path) -> None:
+def test_rclpys_executor_takes_over_where_the_wait_set_is_another_one(domain: dict[str, str]) -> None:
     passes(
-        tmp_path,
+        domain,
         """
 async def test(backend, publisher, hear):
     backend.subscription("/a", STRING, hear)
@@ -136,9 +119,11 @@ rclpy.impl.implementation_singleton.rclpy_implementation = Without()
 
 
 @pytest.mark.parametrize("name", ["RCLError", "InvalidHandle", "WaitSet"])
-def test_a_node_receives_serves_and_stops_without_an_inner_name_of_rclpy(tmp_path: Path, name: str) -> None:
+def test_a_node_receives_serves_and_stops_without_an_inner_name_of_rclpy(
+    domain: dict[str, str], name: str
+) -> None:
     passes(
-        tmp_path,
+        domain,
         """
 async def serve(request):
     return {"success": request.data, "message": "served"}
@@ -158,9 +143,11 @@ async def test(backend, publisher, hear):
 
 
 @pytest.mark.parametrize("names", [["WaitSet"], ["RCLError", "InvalidHandle", "WaitSet"]])
-def test_without_rclpys_inner_names_all_goes_through_its_executor(tmp_path: Path, names: list[str]) -> None:
+def test_without_rclpys_inner_names_all_goes_through_its_executor(
+    domain: dict[str, str], names: list[str]
+) -> None:
     passes(
-        tmp_path,
+        domain,
         """
 from jacaros.robots.ros.errors import RosError
 
@@ -180,9 +167,9 @@ async def test(backend, publisher, hear):
     )
 
 
-def test_subscriptions_come_and_go_while_messages_arrive(tmp_path: Path) -> None:
+def test_subscriptions_come_and_go_while_messages_arrive(domain: dict[str, str]) -> None:
     passes(
-        tmp_path,
+        domain,
         """
 async def test(backend, publisher, hear):
     before = len(list(backend.rcl.subscriptions)), len(list(backend.rcl.waitables))
@@ -204,9 +191,9 @@ async def test(backend, publisher, hear):
     )
 
 
-def test_a_deadline_is_reported_although_the_executor_takes_no_messages(tmp_path: Path) -> None:
+def test_a_deadline_is_reported_although_the_executor_takes_no_messages(domain: dict[str, str]) -> None:
     passes(
-        tmp_path,
+        domain,
         """
 from jacaros.robots.ros.qos import QoS
 
@@ -221,9 +208,9 @@ async def test(backend, publisher, hear):
     )
 
 
-def test_the_clock_that_rclpy_follows_does_not_keep_its_executor_busy(tmp_path: Path) -> None:
+def test_the_clock_that_rclpy_follows_does_not_keep_its_executor_busy(domain: dict[str, str]) -> None:
     passes(
-        tmp_path,
+        domain,
         """
 async def test(backend, publisher, hear):
     robot = open_backend("ros2", clock, "simulated", log=told.append, parameters={"use_sim_time": True})
@@ -243,9 +230,9 @@ async def test(backend, publisher, hear):
     )
 
 
-def test_requests_that_were_never_answered_are_forgotten_with_their_goal(tmp_path: Path) -> None:
+def test_requests_that_were_never_answered_are_forgotten_with_their_goal(domain: dict[str, str]) -> None:
     passes(
-        tmp_path,
+        domain,
         """
 from jacaros.robots.ros.errors import CallTimedOut
 
@@ -288,6 +275,7 @@ class _Answering(dict[Any, Any]):
 
 
 def test_a_call_may_be_answered_while_it_is_forgotten() -> None:
+    pytest.importorskip("rclpy", reason="no ROS 2 here; see test_contract_presence")
     from jacaros.robots.ros.drivers.ros2.actions import Ros2GoalWire
 
     wire = Ros2GoalWire.__new__(Ros2GoalWire)

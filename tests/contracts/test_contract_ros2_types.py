@@ -1,12 +1,7 @@
 """ROS 2 alone: names and parameters with mismatched types have clear errors."""
 
-import os
-import subprocess
-import sys
-from pathlib import Path
-
 import pytest
-from presence import is_wanted, ros2_environment
+from programs import run_program
 
 pytestmark = pytest.mark.ros2
 
@@ -36,19 +31,8 @@ run(main, WallClock())
 """
 
 
-def test_a_name_already_used_with_another_type_is_reported(
-    tmp_path: Path, request: pytest.FixtureRequest
-) -> None:
-    if not is_wanted("ros2", request.config):
-        pytest.skip("no ROS 2 here; see test_contract_presence")
-    done = subprocess.run(
-        [sys.executable, "-c", PROGRAM],
-        env=os.environ | ros2_environment(tmp_path),
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
+def test_a_name_already_used_with_another_type_is_reported(domain: dict[str, str]) -> None:
+    done = run_program(PROGRAM, domain)
     end = "this node already uses it with another type"
     assert done.stdout.splitlines() == [
         f"service /s cannot be used with type std_srvs/srv/SetBool: {end}",
@@ -74,19 +58,8 @@ run(main, WallClock())
 """
 
 
-def test_a_mismatched_value_for_a_parameter_of_rclpys_own_is_reported(
-    tmp_path: Path, request: pytest.FixtureRequest
-) -> None:
-    if not is_wanted("ros2", request.config):
-        pytest.skip("no ROS 2 here; see test_contract_presence")
-    done = subprocess.run(
-        [sys.executable, "-c", WRONG_PARAMETER],
-        env=os.environ | ros2_environment(tmp_path),
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
+def test_a_mismatched_value_for_a_parameter_of_rclpys_own_is_reported(domain: dict[str, str]) -> None:
+    done = run_program(WRONG_PARAMETER, domain)
     assert done.stdout.startswith("a parameter of /node: "), done.stderr
     assert "use_sim_time" in done.stdout
     assert done.returncode == 0
