@@ -7,6 +7,7 @@ import asyncio
 from typing import Any
 
 import hypothesis.strategies as st
+import pytest
 from hypothesis import settings
 from hypothesis.stateful import Bundle, RuleBasedStateMachine, consumes, invariant, rule
 
@@ -21,7 +22,7 @@ from jacaros.robots.ros.action import (
     ServedGoals,
 )
 from jacaros.robots.ros.action_client import ENDING, ActionClient, GoalHandle
-from jacaros.robots.ros.errors import CallTimedOut, ServiceError
+from jacaros.robots.ros.errors import CallTimedOut, ServerUnavailable, ServiceError
 from jacaros.robots.ros.typestore import DefinitionSchema
 from jacaros.runtime.clock import VirtualClock, new_event_loop
 
@@ -329,6 +330,36 @@ def test_a_closed_client_does_not_send_a_goal_that_waited_for_another_to_end() -
     life.turn(0.0)
     assert life.wire.sent == ["goal0"]
     life.a_closed_client_is_not_busy()
+    life.teardown()
+
+
+def lose_goals(life: ClientLife, count: int) -> None:
+    """Let goals find no server as long as the client sends any, at most so many."""
+    for number in range(count):
+        if number < len(life.wire.sent):
+            life.run.do(life.sender.fail, f"goal{number}", ServerUnavailable("no server"))
+            life.turn(0.1)
+
+
+def test_a_goal_without_a_server_is_sent_again_as_long_as_there_is_time() -> None:
+    life = ClientLife()
+    life.send(2.0)
+    lose_goals(life, 3)
+    life.tell(3, "accepted")
+    life.turn(0.0)
+    assert life.tasks[0].result().goal_id == "goal3"
+    assert life.run.clock.elapsed < 1.0
+    life.teardown()
+
+
+def test_the_timeout_of_a_goal_reports_that_no_server_offers_the_action() -> None:
+    life = ClientLife()
+    life.send(2.0)
+    lose_goals(life, 30)
+    assert 1.8 <= life.run.clock.elapsed <= 2.1
+    assert not life.sender.busy
+    with pytest.raises(ServerUnavailable, match=r"no server offered action /count \(.*Count\) within 2 s"):
+        life.tasks[0].result()
     life.teardown()
 
 

@@ -17,14 +17,25 @@ pytestmark = pytest.mark.ros1
 ADD = "example_interfaces/srv/AddTwoInts"
 
 
-def test_the_generated_service_is_the_one_of_the_tutorials(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("JACAROS_CACHE", str(tmp_path))
+def define(folder: Path, type_name: str, text: str) -> None:
+    package, kind, name = type_name.split("/")
+    path = folder / package / kind / f"{name}.{kind}"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+
+
+@pytest.fixture(autouse=True)
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder of generated classes."""
+    monkeypatch.setenv("JACAROS_CACHE", str(tmp_path / "cache"))
+    return tmp_path / "cache"
+
+
+def test_the_generated_service_is_the_one_of_the_tutorials(cache: Path) -> None:
     kind = GenpySchema().service_class(ADD)
     assert kind._md5sum == "6a2e34150c00229791cc89ff309fff21"
     assert kind._type == "rospy_tutorials/AddTwoInts"
-    [file] = (tmp_path / "ros1").glob("*.py")
+    [file] = (cache / "ros1").glob("*.py")
     written = file.stat().st_mtime_ns
     assert GenpySchema().service_class(ADD)._md5sum == kind._md5sum
     assert file.stat().st_mtime_ns == written
@@ -36,10 +47,8 @@ def test_it_works_without_a_writable_cache(tmp_path: Path, monkeypatch: pytest.M
     assert GenpySchema().service_class(ADD)._request_class.__slots__ == ["a", "b"]
 
 
-def test_services_of_the_users_folders_are_generated(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("JACAROS_CACHE", str(tmp_path / "cache"))
-    (tmp_path / "shop" / "srv").mkdir(parents=True)
-    (tmp_path / "shop" / "srv" / "Buy.srv").write_text("string what\nint32[] sizes\n---\nfloat64 price\n")
+def test_services_of_the_users_folders_are_generated(tmp_path: Path) -> None:
+    define(tmp_path, "shop/srv/Buy", "string what\nint32[] sizes\n---\nfloat64 price\n")
     schema = GenpySchema([tmp_path])
     assert schema.service_class("shop/srv/Buy")._type == "shop/Buy"
     request = schema.make("shop/srv/Buy_Request", {"what": "tea", "sizes": [1, 2]})
@@ -81,13 +90,6 @@ geometry_msgs/PoseStamped base_position
 PARTS = ("Goal", "Result", "Feedback", "ActionGoal", "ActionResult", "ActionFeedback", "Action")
 
 
-def define(folder: Path, type_name: str, text: str) -> None:
-    package, kind, name = type_name.split("/")
-    path = folder / package / kind / f"{name}.{kind}"
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text)
-
-
 def test_an_installed_action_is_used(tmp_path: Path) -> None:
     messages = pytest.importorskip("move_base_msgs.msg")
     define(tmp_path, "move_base_msgs/action/MoveBase", "int8 other\n---\n---\n")
@@ -96,9 +98,8 @@ def test_an_installed_action_is_used(tmp_path: Path) -> None:
     assert type(schema.new("move_base_msgs/action/MoveBase_Goal")) is messages.MoveBaseGoal
 
 
-def test_a_generated_action_is_the_genuine_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_generated_action_is_the_genuine_one(tmp_path: Path) -> None:
     messages = pytest.importorskip("move_base_msgs.msg")
-    monkeypatch.setenv("JACAROS_CACHE", str(tmp_path / "cache"))
     genuine = {part: getattr(messages, f"MoveBase{part}")._md5sum for part in PARTS}
     define(tmp_path, "copied_msgs/action/MoveBase", MOVE_BASE)
     schema = GenpySchema([tmp_path])
@@ -108,8 +109,7 @@ def test_a_generated_action_is_the_genuine_one(tmp_path: Path, monkeypatch: pyte
     assert type(made["Action"]().action_goal.goal) is made["Goal"]
 
 
-def test_our_action_definitions_are_generated(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("JACAROS_CACHE", str(tmp_path))
+def test_our_action_definitions_are_generated() -> None:
     factory = GenpySchema()
     goal = factory.make("nav2_msgs/action/NavigateToPose_Goal", {"pose": {"pose": {"position": {"x": 2}}}})
     assert goal.pose.pose.position.x == 2.0
@@ -120,10 +120,7 @@ def test_our_action_definitions_are_generated(tmp_path: Path, monkeypatch: pytes
     assert result.error_code == result.FAILED_TO_LOAD_BEHAVIOR_TREE
 
 
-def test_definitions_of_ros2_are_read_as_ros1_would_write_them(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("JACAROS_CACHE", str(tmp_path / "cache"))
+def test_definitions_of_ros2_are_read_as_ros1_would_write_them(tmp_path: Path) -> None:
     define(
         tmp_path,
         "lab_msgs/msg/Spot",
@@ -147,8 +144,7 @@ def test_definitions_of_ros2_are_read_as_ros1_would_write_them(
     assert plain(factory.make("lab_msgs/srv/Find_Request", {"like": {"name": "x"}}))["like"]["name"] == "x"
 
 
-def test_unknown_and_faulty_actions_are_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("JACAROS_CACHE", str(tmp_path / "cache"))
+def test_unknown_and_faulty_actions_are_reported(tmp_path: Path) -> None:
     define(tmp_path, "lab_msgs/action/Cut", "int32 a\n---\n")
     define(tmp_path, "lab_msgs/action/Odd", "int33 a\n---\n---\n")
     schema = GenpySchema([tmp_path])
