@@ -126,7 +126,7 @@ class RosApi:
 
 
 def write_ros1_types(folder: Path) -> None:
-    """Write what ROS 1 has beyond ROS 2: the messages of actionlib's topics for our actions, and the log's."""
+    """Write what ROS 1 has beyond ROS 2: the messages of actionlib's topics for our actions."""
     for path in BUILT_IN.glob("*/action/*.action"):
         package, name = path.parts[-3], path.stem
         parts = split(f"{package}/action/{name}", path.read_text())
@@ -140,8 +140,6 @@ def write_ros1_types(folder: Path) -> None:
         }
         for message, text in texts.items():
             _write(folder, f"{package}/{message}", text)
-    log = "byte INFO=2\nstd_msgs/Header header\nbyte level\nstring name\nstring msg\nstring file\n"
-    _write(folder, "rosgraph_msgs/Log", f"{log}string function\nuint32 line\nstring[] topics\n")
 
 
 def _write(folder: Path, name: str, text: str) -> None:

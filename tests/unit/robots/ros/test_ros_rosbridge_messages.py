@@ -83,10 +83,8 @@ def test_what_is_not_of_the_type_is_refused_with_the_name_of_the_field(
     [
         (64, b"\x01\xff", [1.0, 255.0]),
         (77, b"\xff\xff\x02\x00", [-1.0, 2.0]),
-        (73, b"\xff\xff\x00\x02", [-1.0, 2.0]),
-        (84, b"\x00\x3c\x00\xc0", [1.0, -2.0]),
-        (80, b"\x3c\x00\xc0\x00", [1.0, -2.0]),
-        (82, b"\x3f\xf8" + b"\x00" * 6, [1.5]),
+        (72, b"\xff\x02", [-1.0, 2.0]),
+        (86, b"\x00" * 6 + b"\xf8\x3f", [1.5]),
     ],
 )
 def test_typed_arrays_of_all_kinds_are_read(
@@ -95,8 +93,10 @@ def test_typed_arrays_of_all_kinds_are_read(
     assert translator.decode(SCAN, {"ranges": cbor2.CBORTag(tag, octets)}).ranges.tolist() == numbers
 
 
-@pytest.mark.parametrize("tag", [84, 85])
-def test_half_an_element_is_refused(translator: Translator, tag: int) -> None:
+@pytest.mark.parametrize("tag", [80, 85])
+def test_half_an_element_and_a_kind_that_no_server_sends_are_refused(
+    translator: Translator, tag: int
+) -> None:
     with pytest.raises(ValueError, match="field ranges"):
         translator.decode(SCAN, {"ranges": cbor2.CBORTag(tag, b"\x00\x00\x00")})
 

@@ -12,7 +12,6 @@ message with an array of fixed length, for instance, is lost.
 import base64
 import binascii
 import math
-import struct
 import sys
 from array import array
 from collections.abc import Callable, Mapping
@@ -200,8 +199,19 @@ def _numbers(field: FieldType) -> Decoder:
     return decode
 
 
-_TYPED_ARRAYS = range(64, 88)
-"""Tags of typed arrays; their bits mean: floats, signed integers, little-endian, and the size of an element."""
+_TYPED_ARRAYS = {
+    64: "B",
+    69: "H",
+    70: "I",
+    71: "Q",
+    72: "b",
+    77: "h",
+    78: "i",
+    79: "q",
+    85: "f",
+    86: "d",
+}
+"""Type codes of `array.array` by the tags that servers use, all little-endian."""
 
 
 def unpacked(value: Any) -> "array[Any] | None":
@@ -210,20 +220,11 @@ def unpacked(value: Any) -> "array[Any] | None":
     Raises:
         ValueError: its octets are not a whole number of elements.
     """
-    tag = getattr(value, "tag", -1)
-    if tag not in _TYPED_ARRAYS or not isinstance(value.value, bytes):
+    code = _TYPED_ARRAYS.get(getattr(value, "tag", -1))
+    if code is None or not isinstance(value.value, bytes):
         return None
-    kind = ("efd" if tag & 16 else "bhiq" if tag & 8 else "BHIQ")[tag & 3 :][:1]
-    order = "little" if tag & 4 else "big"
-    if not kind:  # floats of 128 bits
-        return None
-    if kind == "e":  # 16 bits, a type that Python arrays lack
-        if len(value.value) % 2:
-            raise ValueError(f"{len(value.value)} octets of numbers with 2 are given")
-        sign = ">" if order == "big" else "<"
-        return array("f", struct.unpack(f"{sign}{len(value.value) // 2}e", value.value))
-    made = array(kind, value.value)
-    if order != sys.byteorder:
+    made = array(code, value.value)
+    if sys.byteorder == "big":
         made.byteswap()
     return made
 
@@ -247,15 +248,6 @@ def _can_be_packed(field: FieldType) -> bool:
     return not field.array or (not field.length and field.base != "string")
 
 
-_OWN = {
-    "rosgraph_msgs/msg/Log": "std_msgs/Header header\nbyte level\nstring name\nstring msg\nstring file\n"
-    "string function\nuint32 line\nstring[] topics\n",
-    "rcl_interfaces/srv/GetParameters": "string[] names\n---\nParameterValue[] values\n",
-    "rcl_interfaces/srv/GetParameterTypes": "string[] names\n---\nuint8[] types\n",
-    "rcl_interfaces/srv/SetParameters": "Parameter[] parameters\n---\nSetParametersResult[] results\n",
-    "rcl_interfaces/srv/ListParameters": "string[] prefixes\nuint64 depth\n---\nListParametersResult result\n",
-}
-"""Definitions that the backend itself needs: ROS 1's log, and the services of ROS 2's nodes."""
 _ACTIONLIB = {
     "ActionGoal": "std_msgs/Header header\nactionlib_msgs/GoalID goal_id\n{action}_Goal goal\n",
     "ActionResult": "std_msgs/Header header\nactionlib_msgs/GoalStatus status\n{action}_Result result\n",
@@ -265,7 +257,7 @@ _ACTIONLIB = {
 
 
 class BridgeSchema(DefinitionSchema):
-    """Message classes of `DefinitionSchema`, plus those that the backend itself and actionlib need."""
+    """Message classes of `DefinitionSchema`, plus those of actionlib's topics."""
 
     def _require(self, type_name: str) -> None:
         action, _, part = type_name.rpartition("_")
@@ -273,9 +265,6 @@ class BridgeSchema(DefinitionSchema):
             super()._require(type_name)
         elif not is_stored(type_name):
             self._register(type_name, _ACTIONLIB[part].format(action=action))
-
-    def _definition(self, type_name: str) -> str:
-        return _OWN.get(type_name) or super()._definition(type_name)
 
 
 def written_on_ros1(type_name: str) -> str:
