@@ -80,14 +80,6 @@ async def test_a_tool_rests_while_the_intention_is_suspended_and_stops_at_the_en
     assert tools[5:] == [(14.6, "")]
 
 
-@pytest.mark.world("house")
-async def test_the_world_logs_each_task_with_the_true_place(lab: Lab) -> None:
-    cleaner = await lab.make(ArtCleaning)
-    await lab.do(cleaner, "clean", 2)
-    (event,) = [event for event in lab.world.log if event.kind == "task"]
-    assert event.data == {"task": "mop floor kitchen", "room": "hallway"}
-
-
 async def test_rooms_follow_each_other_and_one_can_ask_where_one_is(
     lab: Lab, artifact: ArtifactId, watcher: Watcher
 ) -> None:

@@ -10,6 +10,14 @@ from robot_lab import Lab, Watcher, made
 from jacaros.artifacts import ArtifactId, Environment, Out, Structure
 from jacaros.robots.artifacts.connection_artifact import ArtRos
 from jacaros.robots.registry import find_type
+from jacaros.robots.ros.errors import (
+    CallTimedOut,
+    ParameterRefused,
+    RosError,
+    ServiceError,
+    ServiceUnavailable,
+    TransformUnavailable,
+)
 from jacaros.robots.ros.open import open_backend
 from jacaros.robots.ros.parameter import DeclaredParameter
 from jacaros.robots.ros.ros_clock import RosClock
@@ -50,14 +58,9 @@ async def test_parameters_of_nodes_are_read_and_written(lab: Lab, artifact: Arti
     assert await given(lab, artifact, "get_parameter", "controller", "speed") == 0.5
     names = await given(lab, artifact, "list_parameters", "/controller")
     assert [each for each in names if each in ("name", "places", "speed")] == ["name", "places", "speed"]
-    await lab.do(artifact, "set_parameter", "controller", "speed", 1)
-    assert await own.get("speed") == 1.0
-    assert isinstance(await own.get("speed"), float)
-    await lab.do(artifact, "set_parameter", "controller", "places", [3, 4.5])
-    assert await given(lab, artifact, "get_parameter", "controller", "places") == [3.0, 4.5]
-    for value in (7.5, [[1], "a"]):
-        refused = await lab.call(artifact, "set_parameter", "controller", "speed", value)
-        assert refused.reason == 'parameter_refused("speed")'
+    assert await given(lab, artifact, "get_parameter", "controller", "places") == [1.0, 2.0]
+    refused = await lab.call(artifact, "set_parameter", "controller", "speed", 7.5)
+    assert refused.reason == 'parameter_refused("speed")'
     unknown = await lab.call(artifact, "get_parameter", "controller", "sped", Out())
     assert unknown.reason == 'parameter_unknown("sped")'
 
@@ -96,9 +99,11 @@ async def test_frames_are_looked_up_in_metres_and_degrees(lab: Lab, artifact: Ar
 @made(ArtRos)
 async def test_lines_go_to_the_graphs_log(lab: Lab, artifact: ArtifactId) -> None:
     heard = lab.hear("/rosout", "rcl_interfaces/msg/Log")
-    await lab.do(artifact, "rosout", "warn", "the shelf is empty")
+    for level in ("debug", "info", "warn", "error", "fatal"):
+        await lab.do(artifact, "rosout", level, "the shelf is empty")
     await lab.sleep(0.1)
-    assert [(each.name.strip("/"), each.msg) for each in heard] == [("lab", "the shelf is empty")]
+    assert {(each.name.strip("/"), each.msg) for each in heard} == {("lab", "the shelf is empty")}
+    assert [each.level for each in heard] == [10, 20, 30, 40, 50]
     wrong = await lab.call(artifact, "rosout", "loud", "hello")
     assert wrong.reason == 'unknown_level("loud")'
 
@@ -120,3 +125,82 @@ async def test_a_jump_of_the_simulators_time_is_a_signal() -> None:
         assert watcher.signals == signals[:number]
     await environment.close()
     await backend.close()
+
+
+@pytest.mark.parametrize(
+    ("before", "written", "after"),
+    [
+        (1.5, 2, 2.0),
+        (1.5, 2.5, 2.5),
+        (1, 2, 2),
+        (False, True, True),
+        ("a", "b", "b"),
+        ([1, 2], [3, 4, 5], [3, 4, 5]),
+        ([0.5], [3, 4.5], [3.0, 4.5]),
+        (["a"], ["b", "c"], ["b", "c"]),
+        ([True], [False, True], [False, True]),
+        (["a"], [], []),
+    ],
+)
+async def test_a_value_keeps_the_parameters_type(lab: Lab, before: Any, written: Any, after: Any) -> None:
+    node = await lab.node("n")
+    node.parameters().declare("p", DeclaredParameter(before))
+    artifact = await lab.make(ArtRos)
+    await lab.do(artifact, "set_parameter", "n", "p", written)
+    found = await node.parameters().get("p")
+    assert list(found) == after if isinstance(after, list) else found == after
+    assert type(found) is type(after) or isinstance(after, list)
+
+
+@pytest.mark.parametrize(
+    "value", [[1, "a"], [True, 2], [[1], [2]], Structure("f", (1,)), ["a", Structure("f", (1,))]]
+)
+async def test_a_value_that_no_parameter_has_is_refused_before_a_node_is_asked(lab: Lab, value: Any) -> None:
+    artifact = await lab.make(ArtRos)
+    refused = await lab.call(artifact, "set_parameter", "nobody", "p", value)
+    assert refused.reason == 'parameter_refused("p")'
+    assert lab.clock.elapsed == 0
+
+
+async def test_names_of_nodes_are_below_the_robots_name_unless_they_are_absolute(lab: Lab) -> None:
+    asked: list[str] = []
+
+    class Answers:
+        async def get(self, name: str, timeout: float) -> Any:
+            return timeout
+
+    def parameters(node: str) -> Answers:
+        asked.append(node)
+        return Answers()
+
+    backend: Any = lab.backend
+    backend.parameters = parameters
+    artifact = await lab.make(ArtRos, "bot", Structure("timeout", (2.5,)))
+    for name in ("n", "/bot/n", "/n", "~n"):
+        out = Out()
+        await lab.do(artifact, "get_parameter", name, "p", out)
+        assert out.value == 2.5
+    assert [asked[0].lstrip("/"), *asked[1:]] == ["bot/n", "/bot/n", "/n", "~n"]
+
+
+@pytest.mark.parametrize(
+    ("error", "reason"),
+    [
+        (ParameterRefused("no"), 'parameter_refused("p")'),
+        (TransformUnavailable("old", "too_old"), "transform_unavailable(too_old)"),
+        (ServiceUnavailable("gone"), 'service_unavailable("n")'),
+        (CallTimedOut("late"), "service_timeout(5)"),
+        (ServiceError("broken"), 'service_failed("n")'),
+        (RosError("other"), 'ros_error("RosError")'),
+    ],
+)
+async def test_each_error_of_the_graph_has_its_reason(lab: Lab, error: RosError, reason: str) -> None:
+    class Broken:
+        async def get(self, name: str, timeout: float) -> Any:
+            raise error
+
+    backend: Any = lab.backend
+    backend.parameters = lambda node: Broken()
+    artifact = await lab.make(ArtRos)
+    failed = await lab.call(artifact, "get_parameter", "n", "p", Out())
+    assert failed.reason == reason

@@ -3,9 +3,10 @@
 import math
 
 import pytest
+from plant import Plant
 
-from jacaros.robots.artifacts.approach import Outlook, TimedCommand, pulse_for
-from jacaros.robots.artifacts.drive_model import DriveModel, Limits, Velocity
+from jacaros.robots.artifacts.approach import Outlook, TimedCommand
+from jacaros.robots.artifacts.drive_model import Limits, Velocity
 from jacaros.robots.artifacts.maneuver import (
     DriveTo,
     Line,
@@ -18,70 +19,18 @@ from jacaros.robots.artifacts.maneuver import (
     bearing,
     distance,
     go_to,
-    steer,
 )
 from jacaros.robots.plane.pose import ORIGIN, Pose, normalised
 
 LIMITS = Limits(speed=0.65, turn_speed=1.0)
-TICK = 0.01
 
 
-class Base:
-    """A base with limits, whose commands and odometry are late.
+class Base(Plant):
+    """A robot that follows maneuvers; *late*: periods of 0.05 s from a command until odometry shows its effect."""
 
-    Args:
-        late: periods of 0.05 s from a command being sent to odometry showing its effect; the half of them each way.
-        sticks: commands below these speeds move nothing.
-        acceleration: the real limit; the robot was declared to have 0.8.
-    """
-
-    def __init__(
-        self,
-        late: int = 1,
-        sticks: Velocity = Velocity(),  # noqa: B008 - frozen
-        acceleration: float = 0.8,
-    ) -> None:
-        self.pose, self.velocity, self.sticks = ORIGIN, Velocity(), sticks
-        self.acceleration = acceleration
-        self.delay = late * 0.05
-        self.now = 0.0
-        self.sent: list[tuple[float, Velocity]] = [(-1.0, Velocity())]
-        self.shown: list[tuple[float, Pose, Velocity]] = []
-        self.model = DriveModel(LIMITS)
+    def __init__(self, late: int = 1, acceleration: float = 0.8) -> None:
+        super().__init__(late * 0.05, acceleration, 6.0 * acceleration, limits=LIMITS)
         self.wait(1.0)
-
-    def wait(self, seconds: float) -> None:
-        for _ in range(round(seconds / TICK)):
-            self._step(
-                next(velocity for at, velocity in reversed(self.sent) if at <= self.now - self.delay / 2)
-            )
-            self.now += TICK
-            if round(self.now / TICK) % 5 == 0:
-                self.shown.append((self.now + self.delay / 2, self.pose, self.velocity))
-            while self.shown and self.shown[0][0] <= self.now + 1e-9:
-                _, pose, velocity = self.shown.pop(0)
-                self.model.observed(pose, velocity, self.now, 0.0)
-
-    def drive(self, step: TimedCommand) -> None:
-        self.model.commanded(step.velocity, self.now)
-        self.sent.append((self.now, step.velocity))
-        self.wait(step.seconds)
-
-    def _step(self, wanted: Velocity) -> None:
-        def ramp(now: float, wanted: float, most: float) -> float:
-            return now + max(-most, min(most, wanted - now))
-
-        linear = wanted.linear if abs(wanted.linear) >= self.sticks.linear else 0.0
-        angular = wanted.angular if abs(wanted.angular) >= self.sticks.angular else 0.0
-        v = ramp(self.velocity.linear, linear, self.acceleration * TICK)
-        w = ramp(self.velocity.angular, angular, 6.0 * self.acceleration * TICK)
-        middle = self.pose.yaw + 0.5 * w * TICK
-        self.velocity = Velocity(v, w)
-        self.pose = Pose(
-            self.pose.x + v * TICK * math.cos(middle),
-            self.pose.y + v * TICK * math.sin(middle),
-            self.pose.yaw + w * TICK,
-        )
 
     def outlook(self) -> Outlook:
         ahead, velocity = self.model.ahead(self.now)
@@ -95,7 +44,7 @@ class Base:
             step = maneuver.command(self.outlook())
             if step is None:
                 return self.now - began
-            self.drive(step)
+            self.drive(*step.velocity, step.seconds)
         raise AssertionError(f"no end: {self.pose}")
 
 
@@ -121,7 +70,7 @@ def furthest(base: Base, maneuver: Maneuver) -> float:
     reached = 0.0
     maneuver.begin(base.model.pose)
     while (step := maneuver.command(base.outlook())) is not None:
-        base.drive(step)
+        base.drive(*step.velocity, step.seconds)
         reached = max(reached, base.pose.x)
     return reached
 
@@ -133,13 +82,6 @@ def test_a_drive_brakes_by_the_acceleration_that_it_has_measured(late: int, acce
     assert furthest(base, Straight(2.0)) < 2.05
     assert base.pose.x == pytest.approx(2, abs=0.01)
     assert base.model.linear.acceleration == pytest.approx(min(0.8, acceleration), rel=0.45)
-
-
-@pytest.mark.parametrize("late", [1, 4, 8, 14])
-def test_the_delay_is_measured_from_commands_and_odometry(late: int) -> None:
-    base = Base(late)
-    base.follow(Straight(1.0))
-    assert base.model.delay == pytest.approx(late * 0.05, abs=0.05)
 
 
 def test_a_robot_whose_delay_is_unknown_does_not_overshoot_a_short_way() -> None:
@@ -205,7 +147,7 @@ def test_speed_rises_by_the_acceleration_and_never_passes_the_cruise_speed() -> 
         assert step is not None
         assert before - 0.05 < step.velocity.linear <= min(0.65, before + 0.04 + 1e-9)
         before = step.velocity.linear
-        base.drive(step)
+        base.drive(*step.velocity, step.seconds)
     assert before == 0.65
 
 
@@ -217,27 +159,5 @@ def test_a_robot_past_its_goal_comes_back() -> None:
     base.wait(0.2)
     while (step := maneuver.command(base.outlook())) is not None:
         assert step.velocity.linear <= 0.0
-        base.drive(step)
+        base.drive(*step.velocity, step.seconds)
     assert base.pose.x == pytest.approx(0.2, abs=0.006)
-
-
-@pytest.mark.parametrize(
-    ("rest", "speed"), [(0.001, 0.0), (0.01, 0.0), (0.2, 0.0), (0.01, 0.05), (0.3, 0.08)]
-)
-def test_a_pulse_moves_a_robot_by_the_rest(rest: float, speed: float) -> None:
-    seconds = pulse_for(rest, speed, 0.1, 0.8)
-    way = now = 0.0
-    while now < seconds or speed > 0.0:
-        wanted = 0.1 if now < seconds else 0.0
-        speed += max(-0.8e-4, min(0.8e-4, wanted - speed))
-        way, now = way + speed * 1e-4, now + 1e-4
-    assert way == pytest.approx(rest, rel=0.01, abs=1e-4)
-
-
-def test_a_robot_beside_its_line_is_steered_back_in_both_directions() -> None:
-    line = Line(ORIGIN, 2.0)
-    left = Pose(0.5, 0.1, 0.0)
-    assert steer(line, left, 0.3, 0.0, 1.0) < 0.0
-    assert steer(line, left, -0.3, 0.0, 1.0) > 0.0
-    assert abs(steer(line, left, 0.3, 1.0, 1.0)) < abs(steer(line, left, 0.3, 0.0, 1.0))
-    assert steer(line, Pose(1.99, 0.1, 0.0), 0.3, 0.0, 1.0) == 0.0

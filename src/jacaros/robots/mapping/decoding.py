@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache, partial
+from itertools import chain
 from typing import Any
 
 from jacaros.artifacts.env.values import Atom, Structure
@@ -539,8 +540,7 @@ class _Maker:
         takes = [take for field in fields if (take := self._reader(field)) is not None]
         if part.each is None:
             return _single(takes)
-        field = part.key or (fields[0] if fields else None)
-        return _several(getter(part.each), takes, self._reader(field) if field is not None else None)
+        return _several(getter(part.each), takes)
 
     def _element(self) -> FieldType:
         each = self.part.each
@@ -562,24 +562,22 @@ class _Maker:
 
 
 def _single(takes: list[Read]) -> Extract:
-    return lambda message: [ValueRow(None, _row_values(takes, message, message, 0))]
+    if len(takes) == 1:
+        return lambda message: [ValueRow(None, takes[0](message, message, 0))]
+    return lambda message: [
+        ValueRow(None, tuple(chain.from_iterable([take(message, message, 0) for take in takes])))
+    ]
 
 
-def _several(get: Getter, takes: list[Read], key: Read | None) -> Extract:
+def _several(get: Getter, takes: list[Read]) -> Extract:
     def rows(message: Any) -> list[ValueRow]:
         found = []
         for place, element in enumerate(get(message, 0)):
-            named = _hashable(key(message, element, place)) if key else place
-            found.append(ValueRow(named, _row_values(takes, message, element, place)))
+            parts = [take(message, element, place) for take in takes]
+            found.append(ValueRow(_hashable(parts[0]) if parts else place, tuple(chain.from_iterable(parts))))
         return found
 
     return rows
-
-
-def _row_values(takes: list[Read], message: Any, element: Any, place: int) -> tuple[object, ...]:
-    if len(takes) == 1:
-        return takes[0](message, element, place)
-    return tuple([value for take in takes for value in take(message, element, place)])
 
 
 def _hashable(key: tuple[object, ...]) -> object:

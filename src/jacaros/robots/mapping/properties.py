@@ -21,7 +21,6 @@ from jacaros.robots.mapping.fields import (
     is_type,
     path_of,
     place_of,
-    read_field,
     read_fields,
     read_path,
     ros_name,
@@ -96,8 +95,7 @@ class TopicPart:
         type_name: message type; None: found at run time.
         frame: the only frame whose messages are shown; None: any.
         fields: None: the whole message.
-        each: the array whose elements each have a property or signal.
-        key: identifies an element; None: the first field.
+        each: the array whose elements each have a property or signal; the first field identifies an element.
         when_changed: send a signal only if its values differ from the previous ones.
     """
 
@@ -109,7 +107,6 @@ class TopicPart:
     fields: Annotated[tuple[FieldPart, ...] | None, entry(read_fields)] = None
     each: Annotated[FieldPath | None, entry(path_of)] = None
     each_place: FilePosition = START
-    key: Annotated[FieldPart | None, entry(read_field)] = None
     qos: Annotated[QoS | None, entry(read_qos)] = None
     description: Annotated[str, entry(YamlNode.text)] = ""
     policy: ReadingPolicy = ALWAYS
@@ -117,7 +114,7 @@ class TopicPart:
     signal: bool = False
 
 
-_MESSAGE = ("topic", "type", "frame", "fields", "each", "key", "qos", "description")
+_MESSAGE = ("topic", "type", "frame", "fields", "each", "qos", "description")
 _POLICY = ("mode", "rate", "dead_band", "latest_only", "expire")
 PROPERTY = (*_MESSAGE, *_POLICY)
 SIGNAL = (*_MESSAGE, "rate", "when_changed")
@@ -167,8 +164,6 @@ def read_feedback(name: YamlNode, node: YamlNode) -> TopicPart:
 
 def _of_message(part: TopicPart, entries: dict[str, YamlNode]) -> TopicPart:
     each = entries.get("each")
-    if "key" in entries and each is None:
-        entries["key"].wrong("`key` needs `each`", "write the array with the elements: each: detections")
     part = replace(with_entries(part, entries), each_place=place_of(each) if each is not None else part.place)
     if part.fields == ():
         entries["fields"].wrong("`fields` is empty", "name a field, or leave `fields` out for all of them")

@@ -1,11 +1,14 @@
-"""Gaps of a claim's waits: lateness and steps of the clock up to half a second are normal, more is a gap."""
+"""Claims of a robot's wheels: no wake-up is lost, lateness and steps of the clock of more than half a second are gaps, and
+all that drive or wait can be aborted."""
 
 import asyncio
 
 import pytest
 
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.robots.artifacts.driving import MotionClaim
+from jacaros.robots.artifacts.driving import MotionClaim, Motions, motions_of
+from jacaros.robots.ros.open import open_backend
+from jacaros.robots.ros.ros_clock import RosClock
 from jacaros.runtime.clock import VirtualClock, run
 
 
@@ -74,10 +77,12 @@ def test_an_interruption_stops_the_robot_and_keeps_the_reason() -> None:
     assert scene.stops == 1
 
 
-def test_two_wake_ups_of_a_wait_end_it_once() -> None:
+def test_wake_ups_before_and_during_a_wait_end_it_once() -> None:
     scene = Scene()
 
     async def main() -> None:
+        scene.claim.wake()
+        await scene.claim.wait(scene.clock, None)
         waiting = asyncio.ensure_future(scene.claim.wait(scene.clock, 5.0))
         await asyncio.sleep(0)
         scene.claim.wake()
@@ -90,3 +95,41 @@ def test_two_wake_ups_of_a_wait_end_it_once() -> None:
 
     run(main, scene.clock)
     assert scene.claim.gap is None
+
+
+async def test_the_first_message_of_clock_does_not_count_as_a_jump() -> None:
+    clock = RosClock(lambda text: None)
+    stopped: list[bool] = []
+    claim = MotionClaim(lambda: stopped.append(True))
+    for time, gap in ((1000.0, None), (990.0, Structure("clock_jumped", (-10.0,)))):
+        waiting = asyncio.ensure_future(claim.wait(clock, 60.0))
+        await asyncio.sleep(0)
+        clock.move_to(time)
+        claim.wake()
+        await waiting
+        assert claim.gap == gap
+    assert stopped == [True]
+
+
+def test_abort_stops_and_wakes_all_motions() -> None:
+    stopped = []
+    motions = Motions()
+    tickets = [MotionClaim(lambda number=number: stopped.append(number)) for number in range(3)]  # type: ignore[misc]
+    for each in tickets[:2]:
+        motions.claims[each] = None
+    motions.abort()
+    assert stopped == [0, 1]
+    assert motions.stops == 1
+    assert [each.aborted for each in tickets] == [True, True, False]
+
+
+def test_the_motions_of_a_robot_of_a_backend_are_kept_together() -> None:
+    clock = VirtualClock()
+
+    async def main() -> None:
+        one, other = (open_backend("memory", clock, name) for name in ("one", "other"))
+        assert motions_of(one, "/r") is motions_of(one, "/r")
+        assert motions_of(one, "/r") is not motions_of(one, "")
+        assert motions_of(one, "/r") is not motions_of(other, "/r")
+
+    run(main, clock)

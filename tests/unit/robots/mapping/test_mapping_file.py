@@ -145,8 +145,6 @@ properties: {a: {topic: t, mode: lazy}}
   1:34: 'mode' is 'lazy' | choose one of: verbose, on_demand
 properties: {a: {topic: t, mode: on_demand}}
   1:14: no operation requests `a`, which is updated on demand | add an operation: look: {refresh: a}
-properties: {a: {topic: t, key: id}}
-  1:33: `key` needs `each` | write the array with the elements: each: detections
 properties: {a: {topic: t, fields: ['x[i]']}}
   1:37: `x[i]` needs `each` | without `each` write the path alone
 properties: {a: {topic: t, qos: fast}}

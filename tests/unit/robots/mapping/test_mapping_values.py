@@ -182,7 +182,7 @@ def test_one_row_for_each_element_with_parallel_arrays() -> None:
 
 
 def test_a_list_may_identify_elements() -> None:
-    part = topic("[header.frame_id]", "each: markers, key: points")
+    part = topic("[points]", "each: markers")
     markers = [{"points": [{"x": 1}]}, {"points": [{"x": 2}]}]
     assert len({row.key for row in rows(part, "visualization_msgs/msg/MarkerArray", markers=markers)}) == 2
 

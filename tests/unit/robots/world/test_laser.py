@@ -55,15 +55,6 @@ def test_walls_out_of_range_are_skipped_and_no_others() -> None:
         assert near.scan(*pose) == [value if value <= 2.0 else math.inf for value in far.scan(*pose)]
 
 
-def test_the_middle_beam_hits_a_wall_ahead() -> None:
-    laser = Laser(LaserSettings(beams_per_turn=360), "seed", [Segment(2.0, -1.0, 2.0, 1.0)])
-    ranges = laser.scan(0.0, 0.0, 0.0)
-    assert ranges[180] == pytest.approx(2.0)
-    assert ranges[180 + 20] == pytest.approx(2.0 / math.cos(math.radians(20)))
-    assert ranges[90] == math.inf
-    assert ranges[0] == math.inf
-
-
 def test_the_field_of_view_is_centred_on_the_heading() -> None:
     laser = Laser(LaserSettings(beams_per_turn=360, field=PI), "seed", [Segment(2.0, -1.0, 2.0, 1.0)])
     assert laser.angle_min == pytest.approx(-PI / 2)
@@ -91,8 +82,3 @@ def test_noise_is_bounded_and_repeats_with_the_seed() -> None:
     assert first != other
     for noisy, true in zip(first, exact, strict=True):
         assert noisy == true == math.inf or abs(noisy - true) <= 0.02
-
-
-def test_nothing_is_detected_out_of_range() -> None:
-    laser = Laser(LaserSettings(range_max=1.5), "seed", [Segment(2.0, -1.0, 2.0, 1.0)])
-    assert set(laser.scan(0.0, 0.0, 0.0)) == {math.inf}
