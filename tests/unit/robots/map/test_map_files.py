@@ -52,17 +52,14 @@ def test_the_map_of_another_tool_is_read(tmp_path: Path) -> None:
             "did you mean `occupied_thresh`",
         ),
         ("image: none.pgm\nresolution: 1\norigin: [0, 0, 0]\n", "none.pgm"),
-        ("image: room.yaml\nresolution: 1\norigin: [0, 0, 0]\n", "expected a PGM or PNG image"),
         (
             "image: short.pgm\nresolution: 1\norigin: [0, 0, 0]\n",
             "ends after 3 of 4 pixels (2 x 2); save the map again",
         ),
-        ("image: wide.pgm\nresolution: 1\norigin: [0, 0, 0]\n", "16 bits a pixel"),
     ],
 )
 def test_a_map_that_cannot_be_read_is_refused_with_the_reason(tmp_path: Path, text: str, told: str) -> None:
     (tmp_path / "short.pgm").write_bytes(b"P5\n2 2\n255\nabc")
-    (tmp_path / "wide.pgm").write_bytes(b"P5\n1 1\n65535\nab")
     (tmp_path / "room.yaml").write_text(text, encoding="utf-8")
     with pytest.raises(MapFileError, match=r"cannot read the map .*room\.yaml") as wrong:
         load(tmp_path / "room.yaml")

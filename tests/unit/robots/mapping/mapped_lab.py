@@ -1,11 +1,7 @@
 """Mapped artifacts in the laboratory."""
 
 import asyncio
-from collections.abc import Awaitable, Callable
 
-from robot_lab import Lab, in_lab
-
-from jacaros.artifacts import ArtifactId
 from jacaros.robots.mapping.artifact import MappedArtifact, mapped_type
 from jacaros.robots.mapping.file import read_mapping
 
@@ -19,20 +15,6 @@ async def settle() -> None:
     """Let everything happen that needs no time."""
     for _ in range(30):
         await asyncio.sleep(0)
-
-
-def with_mapped(
-    text: str,
-    body: Callable[[Lab, ArtifactId], Awaitable[None]],
-    *arguments: object,
-    world: str | None = None,
-) -> Lab:
-    """Run *body* with one mapped artifact."""
-
-    async def in_it(lab: Lab) -> None:
-        await body(lab, await lab.make(mapped(text), *arguments))
-
-    return in_lab(in_it, world)
 
 
 def mistakes(texts: str) -> dict[str, str]:

@@ -235,9 +235,6 @@ async def test_a_found_type_that_does_not_match_is_reported_with_the_line(lab: L
     assert "  = help: its fields: data (string)" in line
 
 
-WEAK = "  = help: write qos: sensor_data, which is compatible with any publisher"
-
-
 @pytest.mark.parametrize(
     ("policy", "type_name", "fields", "why", "also"),
     [
@@ -262,15 +259,6 @@ async def test_what_keeps_a_publisher_away_is_logged_once_with_the_line(
     assert "m.yaml:1:25: " in line
     assert also in line
     assert t.held == []
-
-
-async def test_the_last_message_of_a_latched_topic_waits(lab: Lab) -> None:
-    publisher = lab.backend.publisher("p", POINT, LATCHED)
-    publisher.publish(publisher.message(x=4))
-    artifact = await lab.make(mapped(points("qos: latched")))
-    watcher = lab.watch(artifact)
-    await settle()
-    assert watcher.holds("a") == [(4,)]
 
 
 async def test_images_are_handles(lab: Lab) -> None:

@@ -11,8 +11,6 @@ from jacaros.robots.mapping.file import MappingError, MappingFile, find_mapping,
 from jacaros.robots.ros.qos import LATCHED, SENSOR_DATA, QoS
 from jacaros.runtime.mas.mappings import check_mapping_file
 
-MESSAGE = "std_msgs/msg/Float64"
-
 
 def told(text: str) -> list[str]:
     """The problems of a file: `line:column: message | help`."""

@@ -1,12 +1,10 @@
 """The polynomial sine: accuracy against exact arithmetic, and ranges of the angles."""
 
-import math
 import random
 from fractions import Fraction
 
 import pytest
 
-from jacaros.robots.plane.pose import wrap
 from jacaros.robots.plane.trigonometry import PI, radians, sine_cosine
 
 DIGITS = 10**70
@@ -60,13 +58,6 @@ def test_quarter_turns_give_the_axes() -> None:
 
 def test_the_same_angle_gives_the_same_bits() -> None:
     assert [value.hex() for value in sine_cosine(1.0)] == ["0x1.aed548f090ceep-1", "0x1.14a280fb5068cp-1"]
-
-
-def test_wrap_keeps_the_direction_within_half_a_turn() -> None:
-    for angle in (-20.0, -PI, -1.0, 0.0, 3.0, PI, 100.0):
-        wrapped = wrap(angle)
-        assert -PI <= wrapped < PI
-        assert math.isclose(math.remainder(wrapped - angle, 2 * PI), 0.0, abs_tol=1e-12)
 
 
 def test_degrees_become_radians() -> None:
