@@ -3,7 +3,6 @@
 For an array there is one property per element: new elements are defined, changed ones updated, missing ones removed.
 """
 
-import dataclasses
 import itertools
 from collections.abc import Callable
 from functools import partial
@@ -21,7 +20,6 @@ from jacaros.robots.ros.message import to_seconds
 from jacaros.robots.ros.node import Sample, Subscription
 from jacaros.robots.ros.qos import SENSOR_DATA, STATE
 from jacaros.robots.ros.waiting import MISSING_AFTER
-from jacaros.runtime.clock import Timer
 from jacaros.runtime.files.yaml import Problem
 from jacaros.runtime.trace import Cause
 
@@ -204,7 +202,7 @@ class Updater:
 
 
 class Signals:
-    """The signals of a topic: all, those that differ from the last ones, or at most some each second.
+    """The signals of a topic: all, or those that differ from the last ones.
 
     Args:
         host: the artifact.
@@ -214,32 +212,15 @@ class Signals:
     def __init__(self, host: MappingHost, part: TopicPart) -> None:
         self._host, self._part = host, part
         self._sent: dict[object, tuple[object, ...]] = {}
-        self._held: tuple[list[ValueRow], Cause | None] | None = None
-        self._pause: Timer | None = None
-        host.at_dispose(self._close)
 
     def take(self, rows: list[ValueRow], cause: Cause | None) -> None:
-        """Handle a message; during the pause after a signal the newest one is held back."""
-        if self._pause is not None:
-            self._held = (rows, cause)
-            return
+        """Handle a message."""
         if self._part.when_changed:
             before, self._sent = self._sent, {row.key: row.values for row in rows}
             rows = [row for row in rows if before.get(row.key) != row.values]
-        if not rows:
-            return
-        if (rate := self._part.policy.rate) is not None:
-            self._pause = self._host.clock.call_later(1.0 / rate, self._go_on)
-        self._host.start(self._host.send_signals, self._part.name, [row.values for row in rows], cause=cause)
-
-    def _go_on(self) -> None:
-        held, self._pause, self._held = self._held, None, None
-        if held is not None:
-            self.take(*held)
-
-    def _close(self) -> None:
-        if self._pause is not None:
-            self._pause.cancel()
+        if rows:
+            values = [row.values for row in rows]
+            self._host.start(self._host.send_signals, self._part.name, values, cause=cause)
 
 
 class Elements:
@@ -254,33 +235,14 @@ class Elements:
         self._host, self._part = host, part
         self._wanted: dict[object, ValueRow] = {}
         self._shown: dict[object, ValueRow] = {}
-        self._seen: dict[object, float] = {}
-        self._expiry: Timer | None = None
         self._versions = itertools.count()
         self._coming = False
-        policy = dataclasses.replace(part.policy, dead_band=0.0, expire=None)
-        self._reading = Reading(policy, host.clock, self._deliver, behind=self._is_behind)
-        host.at_dispose(self.close)
+        self._reading = Reading(part.policy, host.clock, self._deliver, behind=self._is_behind)
+        host.at_dispose(self._reading.close)
 
     def take(self, rows: list[ValueRow], cause: Cause | None) -> None:
         """Handle the elements of a message."""
-        now, expire = self._host.clock.elapsed, self._part.policy.expire
-        new = {row.key: self._kept(row) for row in rows}
-        if expire is not None:
-            self._seen.update(dict.fromkeys(new, now))
-            new = {**self._alive(now, expire), **new}
-            if self._expiry is None:
-                self._expiry = self._host.clock.call_later(expire, self._look)
-        self._want(new, cause)
-
-    def _kept(self, row: ValueRow) -> ValueRow:
-        """Return the row that is already shown if the new one hardly differs."""
-        old = self._wanted.get(row.key)
-        if old is None or self._part.policy.differ(old.values, row.values):
-            return row
-        return old
-
-    def _want(self, new: dict[object, ValueRow], cause: Cause | None) -> None:
+        new = {row.key: row for row in rows}
         if new != self._wanted:
             self._wanted = new
             self._reading.take((next(self._versions),), cause)
@@ -306,27 +268,3 @@ class Elements:
                 host.define_property(name, *row.values)
             elif old != row:
                 host.update_property(name, *row.values, where=old.values)
-
-    def _alive(self, now: float, expire: float) -> dict[object, ValueRow]:
-        alive = {
-            key: row for key, row in self._wanted.items() if now - self._seen.get(key, now) < expire - 1e-9
-        }
-        self._seen = {key: at for key, at in self._seen.items() if key in alive or at == now}
-        return alive
-
-    def _look(self) -> None:
-        expire = self._part.policy.expire
-        assert expire is not None
-        now = self._host.clock.elapsed
-        alive = self._alive(now, expire)
-        self._want(alive, None)
-        self._expiry = None
-        if alive:
-            oldest = min(self._seen.get(key, now) for key in alive)
-            self._expiry = self._host.clock.call_later(max(0.001, oldest + expire - now), self._look)
-
-    def close(self) -> None:
-        """Stop the timer."""
-        self._reading.close()
-        if self._expiry is not None:
-            self._expiry.cancel()

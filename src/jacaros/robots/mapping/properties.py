@@ -117,7 +117,7 @@ class TopicPart:
 _MESSAGE = ("topic", "type", "frame", "fields", "each", "qos", "description")
 _POLICY = ("mode", "rate", "dead_band", "latest_only", "expire")
 PROPERTY = (*_MESSAGE, *_POLICY)
-SIGNAL = (*_MESSAGE, "rate", "when_changed")
+SIGNAL = (*_MESSAGE, "when_changed")
 FEEDBACK = ("fields", "description", "rate", "dead_band", "latest_only")
 
 
@@ -126,17 +126,16 @@ def read_property(name: YamlNode, node: YamlNode) -> TopicPart:
     part, entries = _from_topic(name, node, PROPERTY, "a property")
     if not entries:
         return part
-    policy = read_policy(entries, part.fields)
-    if policy.on_demand and part.each is not None:
-        entries["mode"].wrong("a property for each element is always up to date", "leave `mode` out")
-    return replace(part, policy=policy)
+    for key in ("mode", "dead_band", "expire") if part.each is not None else ():
+        if key in entries:
+            text = "the properties of elements are those of the newest message"
+            entries[key].wrong(text, f"leave `{key}` out, or `each`")
+    return replace(part, policy=read_policy(entries, part.fields))
 
 
 def read_signal(name: YamlNode, node: YamlNode) -> TopicPart:
     """Read one signal."""
-    part, entries = _from_topic(name, node, SIGNAL, "a signal")
-    policy = read_policy(entries, part.fields, latest_only=False) if entries else ALWAYS
-    return replace(part, policy=policy, signal=True)
+    return replace(_from_topic(name, node, SIGNAL, "a signal")[0], signal=True)
 
 
 def _from_topic(
@@ -188,9 +187,7 @@ def is_misplaced(name: YamlNode, node: YamlNode, keys: tuple[str, ...], what: st
     return True
 
 
-def read_policy(
-    entries: dict[str, YamlNode], fields: tuple[FieldPart, ...] | None, latest_only: bool = True
-) -> ReadingPolicy:
+def read_policy(entries: dict[str, YamlNode], fields: tuple[FieldPart, ...] | None) -> ReadingPolicy:
     """Read when to update."""
     mode = entries["mode"].choice("verbose", "on_demand") if "mode" in entries else "verbose"
     rate, expire = entries.get("rate"), entries.get("expire")
@@ -199,7 +196,7 @@ def read_policy(
         on_demand=mode == "on_demand",
         rate=positive(rate) if rate is not None else None,
         dead_band=_bands(entries.get("dead_band"), fields),
-        latest_only=latest.truth() if latest is not None else latest_only,
+        latest_only=latest is None or latest.truth(),
         expire=positive(expire) if expire is not None else None,
         finite=False,  # fields have their own replacements for such numbers
     )

@@ -131,7 +131,6 @@ properties:
     type: sensor_msgs/msg/JointState
     each: name
     fields: [., '/position[i]']
-    {}
 """
 
 
@@ -140,7 +139,7 @@ async def joints(t: Talk, **positions: float) -> None:
 
 
 async def test_one_property_for_each_element(lab: Lab) -> None:
-    t = await talk(lab, JOINTS.format(""))
+    t = await talk(lab, JOINTS)
     await joints(t, left=1, right=2)
     assert t.held == [("left", 1), ("right", 2)]
     await joints(t, left=1, right=3, top=4)
@@ -151,25 +150,6 @@ async def test_one_property_for_each_element(lab: Lab) -> None:
     assert t.held == [("right", 3)]
 
 
-async def test_elements_that_are_not_seen_expire(lab: Lab) -> None:
-    t = await talk(lab, JOINTS.format("expire: 2"))
-    await joints(t, left=1)
-    await t.lab.sleep(1.5)
-    await joints(t, right=2)
-    assert t.held == [("left", 1), ("right", 2)]
-    await t.lab.sleep(0.6)
-    assert t.held == [("right", 2)]
-    await t.lab.sleep(1.5)
-    assert t.held == []
-
-
-async def test_dead_band_of_elements(lab: Lab) -> None:
-    t = await talk(lab, JOINTS.format("dead_band: 0.5"))
-    await joints(t, left=1, right=2)
-    await joints(t, left=1.1, right=3)
-    assert t.held == [("left", 1), ("right", 3)]
-
-
 PART = "{topic: j, type: sensor_msgs/msg/JointState, each: name, fields: [., '/position[i]'], when_changed: true}"
 
 
@@ -178,24 +158,6 @@ async def test_signals_for_each_element_and_for_changes_alone(lab: Lab) -> None:
     await joints(t, left=1, right=2)
     await joints(t, left=1, right=3)
     assert t.watcher.signals == [("part", ("left", 1)), ("part", ("right", 2)), ("part", ("right", 3))]
-
-
-@pytest.mark.parametrize(
-    ("policy", "burst", "last", "shown"),
-    [("", (1, 2, 3), 4, [1, 3, 4]), (", when_changed: true", (1, 1, 0), 0, [1, 0])],
-)
-async def test_signals_at_most_so_often_without_losing_the_last_of_a_burst(
-    lab: Lab, policy: str, burst: tuple[float, ...], last: float, shown: list[float]
-) -> None:
-    t = await talk(lab, f"signals: {{a: {{topic: p, type: {POINT}, fields: x, rate: 1{policy}}}}}")
-    expected = [("a", (x,)) for x in shown]
-    await t.points(*burst)
-    assert t.watcher.signals == expected[:1]
-    await t.lab.sleep(1.1)
-    assert t.watcher.signals == expected[:2]
-    await t.lab.sleep(3)
-    await t.points(last)
-    assert t.watcher.signals == expected
 
 
 @pytest.mark.parametrize(("arguments", "x"), [((), 1), (("r1",), 2), ((Structure("namespace", ("r1",)),), 2)])

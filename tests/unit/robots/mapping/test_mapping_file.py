@@ -143,6 +143,8 @@ properties: {a: {topic: t, mode: lazy}}
   1:34: 'mode' is 'lazy' | choose one of: verbose, on_demand
 properties: {a: {topic: t, mode: on_demand}}
   1:14: no operation requests `a`, which is updated on demand | add an operation: look: {refresh: a}
+properties: {a: {topic: t, each: x, expire: 2}}
+  1:45: the properties of elements are those of the newest message | leave `expire` out, or `each`
 properties: {a: {topic: t, fields: ['x[i]']}}
   1:37: `x[i]` needs `each` | without `each` write the path alone
 properties: {a: {topic: t, qos: fast}}
