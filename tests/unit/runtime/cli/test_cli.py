@@ -85,12 +85,6 @@ def test_an_error_in_a_project_exits_with_code_1(folder: Path, outcome, name: st
     assert "Traceback" not in errors
 
 
-def test_an_unknown_world_lists_the_shipped_ones(folder: Path, outcome: Outcome) -> None:
-    code, _, errors = outcome("run", "hello.asl", "--world", "nowhere")
-    assert code == 1
-    assert "empty, flat, house, maze" in errors
-
-
 def test_an_unhandled_failure_logs_a_warning_with_a_suggestion(folder: Path, outcome: Outcome) -> None:
     program = '!go. +!go <- makeArtifact("m", "ArtCmdVel", [], M); moveForwad(1).'
     (folder / "a.asl").write_text(program, encoding="utf-8")

@@ -1,7 +1,6 @@
 """Whole runs on virtual time: beginning, end, creation and end of agents."""
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -10,7 +9,7 @@ from jacaros.runtime.clock import VirtualClock
 from jacaros.runtime.errors import InternalError
 from jacaros.runtime.mas.agents.host import AgentHost
 from jacaros.runtime.mas.system import System
-from jacaros.testing import RunResult, run_project
+from jacaros.testing import RunResult
 
 Ran = Callable[..., RunResult]
 ENDLESS = {"until_idle": False}
@@ -110,10 +109,3 @@ def test_the_graph_is_left_in_order_even_if_the_end_of_an_agent_fails(ran: Ran, 
 def test_the_clock_of_the_run_is_seen_by_agents(ran: Ran) -> None:
     assert ran("!go. +!go <- .date(Y,M,D); .print(Y,M,D).").lines == ["[a] 202011"]
     assert VirtualClock().now() == 1577836800.0
-
-
-def test_undeclared_files_are_reported(tmp_path: Path) -> None:
-    result = run_project(tmp_path / "none.asl")
-    assert result.exit_code == 1
-    assert "file not found: " in result.errors[0]
-    assert isinstance(result, RunResult)

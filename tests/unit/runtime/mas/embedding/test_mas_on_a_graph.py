@@ -39,13 +39,6 @@ def test_a_mapping_and_other_names_are_given_as_on_the_command_line(tmp_path: Pa
     ("options", "text"),
     [
         ({"domain_id": 3}, "--domain-id needs --ros ros2"),
-        ({"ros": "ros2", "domain_id": 1000}, "--domain-id: expected an integer"),
-        ({"master": "http://robot.lab.example:11311"}, "--master needs --ros ros1"),
-        ({"ros": "ros1", "master": "robot"}, "--master: expected an address"),
-        ({"bridge": "ws://robot.lab.example:9090"}, "--bridge needs --ros rosbridge"),
-        ({"ros_clock": True}, "--clock ros needs"),
-        ({"node_name": "my node"}, "my node"),
-        ({"remap": {"a b": "c"}}, "a b"),
     ],
 )
 def test_options_of_the_graph_are_checked_immediately(options: dict[str, Any], text: str) -> None:
