@@ -77,7 +77,7 @@ def test_they_go_on_when_the_way_opens(example: str, seconds: float, last: str, 
 
 @slow
 @pytest.mark.parametrize("example", CASES)
-def test_they_tell_and_end_with_status_1_if_nobody_answers(example: str, tmp_path: Path) -> None:
+def test_they_tell_and_end_with_status_1_without_an_answer(example: str, tmp_path: Path) -> None:
     result = blocked(example, tmp_path, LONGEST)
     assert [line for line in result.lines if "question 1: I am stuck: " in line]
     assert result.exit_code == 1

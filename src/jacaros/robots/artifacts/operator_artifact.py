@@ -102,7 +102,7 @@ class Operator(RosArtifact):
         names = self.id.path.removeprefix("/main/").strip("/").split("/")
         self._ros_name = "/".join(re.sub(r"^(?=\d)|[^A-Za-z0-9_]", "_", each) for each in names)
         self._topic = None
-        # Where nobody has opened a graph, nobody listens: do not open the default world for a question.
+        # Without an open graph, no node listens: do not open the default world for a question.
         if not self.resources.get("graph_unused") and self.resources.get("ros") is not None:
             self._topic = self.publisher(f"{self._ros_name}/questions", TEXT, LATCHED)
             heard = f"{self._ros_name}/answer"
