@@ -334,17 +334,22 @@ def _expectations(part: ArtifactPart) -> Iterator[Problem]:
                 yield place.problem(text, "write a pattern for each value, _ for any")
 
 
-def misspelt_expectations(mapping: MappingFile) -> Iterator[Problem]:
-    """Yield expected properties and signals that are similar to one of the file, and are in no file of the package."""
-    own = _perceived(mapping)
+def misspelt_expectations(mapping: MappingFile, beside: Sequence[Path] = ()) -> Iterator[Problem]:
+    """Yield expected properties and signals that are similar to one of the file, or of those *beside* it in a project,
+    and are in no file of the package.
+    """
+    own, here = _perceived(mapping), "project" if beside else "file"
     for operation in (each for part in mapping.artifacts.values() for each in part.operations):
         for place, expected in (*operation.expect, *operation.meanwhile):
-            near = close_matches(expected.name, own) if expected.name not in own else []
+            if expected.name in own:
+                continue
+            known = own.union(*(_perceived(read_with_problems(each)[0]) for each in beside))
+            near = close_matches(expected.name, known) if expected.name not in known else []
             others = (load_mapping(SHIPPED / name) for name in (shipped_mappings() if near else ()))
             if near and not any(expected.name in _perceived(each) for each in others):
                 kind = "signal" if expected.signal else "property"
                 yield place.problem(
-                    f"no artifact of this file has the {kind} `{expected.name}`", did_you_mean(near)
+                    f"no artifact of this {here} has the {kind} `{expected.name}`", did_you_mean(near)
                 )
 
 

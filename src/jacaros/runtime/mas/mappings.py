@@ -68,8 +68,10 @@ def _diagnostic(source: SourceFile, problem: Problem, wrong: str) -> Diagnostic:
     return Diagnostic("error", problem.message, span, problem.help or None, wrong)
 
 
-def check_mapping_file(path: Path) -> list[Diagnostic]:
-    """Return the errors of a mapping file, also against the message types that are known without a robot."""
+def check_mapping_file(path: Path, beside: Sequence[Path] = ()) -> list[Diagnostic]:
+    """Return the errors of a mapping file, also against the message types that are known without a robot, and against
+    the files *beside* it in a project.
+    """
     mapping, problems = read_with_problems(path)
     # A line with an error has placeholder values, so its types are not checked.
     wrong = {problem.line for problem in problems}
@@ -80,7 +82,9 @@ def check_mapping_file(path: Path) -> list[Diagnostic]:
     ]
     problems += [each for each in uncertain if each.line not in wrong]
     # Another artifact of the robot may have the property; an alias repeats a problem.
-    misspelt = [each for each in dict.fromkeys(misspelt_expectations(mapping)) if each.line not in wrong]
+    misspelt = [
+        each for each in dict.fromkeys(misspelt_expectations(mapping, beside)) if each.line not in wrong
+    ]
     warnings = diagnostics_of(mapping.file, mapping.text, misspelt, UNKNOWN_PROPERTY)
     errors = diagnostics_of(mapping.file, mapping.text, problems)
     return errors + [replace(each, severity="warning") for each in warnings]

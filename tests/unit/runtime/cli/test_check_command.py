@@ -225,6 +225,23 @@ def test_a_misspelt_expectation_is_a_warning(
     assert not problem or (f"warning: {problem}" in output and f"did you mean {help}?" in output)
 
 
+@pytest.mark.parametrize(
+    ("expect", "problems"),
+    [("dokced", [("own.yaml", 1, "unknown-property")]), ("docked", []), ("lamp", [])],
+)
+def test_a_project_has_the_properties_that_its_mappings_expect(
+    folder: Path, outcome: Outcome, expect: str, problems: list[tuple[str, int, str]]
+) -> None:
+    (folder / "own.yaml").write_text(
+        f"operations: {{go: {{service: s, expect: {{{expect}: [true]}}}}}}\n", encoding="utf-8"
+    )
+    (folder / "robot.asl").write_text("!g.\n+!g <- go.\n", encoding="utf-8")
+    (folder / "lab.jcm").write_text(
+        'mas lab { agent robot : robot.asl mapping: "own.yaml", "turtlebot4.yaml" }', encoding="utf-8"
+    )
+    assert found(outcome, "lab.jcm") == problems
+
+
 def test_a_world_file_is_checked_as_a_world(folder: Path, outcome: Outcome) -> None:
     head = "size: [4, 4]\nborder: walls\nrobots:\n"
     (folder / "flat.yaml").write_text(f"{head}  - {{name: r}}\n", encoding="utf-8")

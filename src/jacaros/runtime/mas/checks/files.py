@@ -280,12 +280,19 @@ class _Checked:
         spaces = self.deployment.workspaces
         names = [artifact.type_name for workspace in spaces for artifact in workspace.artifacts]
         names += [name for _, program in self.programs for name in artifact_types(program)]
-        for name in dict.fromkeys(names):
-            file = name.partition("#")[0]
-            if file.endswith(MAPPINGS):
-                found = next((folder / file for folder in self._folders if is_file(folder / file)), None)
-                if found is not None:
-                    _check_mapping(found, self._findings)
+        files = [
+            file
+            for file in dict.fromkeys(each.partition("#")[0] for each in names)
+            if file.endswith(MAPPINGS)
+        ]
+        if not files:
+            return
+        from jacaros.robots.mapping.file import SHIPPED, find_mapping  # here: see `_check_mapping`
+
+        known = [found for file in files if (found := find_mapping(file, self._folders)) is not None]
+        for each in known:
+            if each.parent != SHIPPED:
+                _check_mapping(each, self._findings, [other for other in known if other != each])
 
     def of_artifacts(self, is_known: bool = True) -> list[Diagnostic]:
         """Return the errors in the artifacts of a project and, if all programs are known, in what agents do with them."""
@@ -372,13 +379,13 @@ def _check_world_file(
     findings.diagnostics += diagnostics_of(str(path), *problems_of(path), wrong=WRONG_WORLD)
 
 
-def _check_mapping(path: Path, findings: Findings) -> None:
+def _check_mapping(path: Path, findings: Findings, beside: Sequence[Path] = ()) -> None:
     if path.resolve() in findings.files:
         return
     from jacaros.runtime.mas.mappings import check_mapping_file  # here: programs are checked without
 
     findings.files.add(path.resolve())
-    findings.diagnostics += check_mapping_file(path)
+    findings.diagnostics += check_mapping_file(path, beside)
 
 
 def _of_project(diagnostic: Diagnostic) -> Diagnostic:
