@@ -257,10 +257,6 @@ class ServedGoals:
             goal.stop()
         return True
 
-    def under_way(self) -> list[str]:
-        """Ids of the active goals."""
-        return list(self._goals)
-
     def close(self) -> None:
         """Abort the active goals: send the outcome to their clients immediately, and cancel their code."""
         self._shut()

@@ -28,19 +28,16 @@ class Handoff(Generic[T]):
     def __init__(self, loop: asyncio.AbstractEventLoop, depth: int, deliver: Callable[[T], None]) -> None:
         self._loop = loop
         self._deliver = deliver
-        self._depth = depth
         self._waiting: deque[T] = deque(maxlen=depth)
         self._lock = threading.Lock()
         self._woken = False
         self._closed = False
-        self.dropped = 0
 
     def put(self, item: T) -> None:
         """Queue *item*; callable from any other thread."""
         with self._lock:
             if self._closed:
                 return
-            self.dropped += len(self._waiting) == self._depth
             self._waiting.append(item)
             if self._woken:
                 return
@@ -54,7 +51,6 @@ class Handoff(Generic[T]):
         with self._lock:
             if self._closed or not items:
                 return
-            self.dropped += max(0, len(self._waiting) + len(items) - self._depth)
             self._waiting.extend(items)
             if self._woken:
                 return

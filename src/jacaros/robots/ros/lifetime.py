@@ -19,7 +19,6 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
-from enum import StrEnum
 from types import FrameType
 from typing import Any, TypeVar
 
@@ -40,24 +39,6 @@ M = TypeVar("M")
 Serve = Callable[[int, FrameType | None], None]
 
 
-class NodeState(StrEnum):
-    """The state of a node in the graph.
-
-    Attributes:
-        JOINING: not connected yet.
-        JOINED: connected.
-        LOST: the connection is gone, and is being made again.
-        LEAVING: the robots are being stopped; only exit hooks may publish.
-        LEFT: the node is no longer in the graph.
-    """
-
-    JOINING = "joining"
-    JOINED = "joined"
-    LOST = "lost"
-    LEAVING = "leaving"
-    LEFT = "left"
-
-
 class Lifetime:
     """The life of one node.
 
@@ -71,7 +52,7 @@ class Lifetime:
             robots and agents share the loop, so a thread could stop no robot.
 
     Attributes:
-        state: changed on the loop, except to `NodeState.LEAVING`.
+        leaving: whether the node is leaving its graph, or has left it: only exit hooks may publish.
     """
 
     def __init__(
@@ -81,13 +62,14 @@ class Lifetime:
         threaded: bool = False,
         insist: Callable[[], None] = lambda: None,
     ) -> None:
-        self.state = NodeState.JOINING
+        self.leaving = False
+        self._gone = False
+        """Whether the node has left its graph."""
         self.threaded = threaded
         self._log = log
         self._finish = finish
         self._insist = insist
         self._hooks: list[Callable[[], None]] = []
-        self._open = True
         self._hooking: set[int] = set()
         """Threads that are running the hooks."""
         self._reported = False
@@ -105,16 +87,6 @@ class Lifetime:
         if self.threaded:
             _process.watch(self)
 
-    def connected(self, connected: bool) -> None:
-        """Note that the graph was found or lost."""
-        if not self.leaving:
-            self.state = NodeState.JOINED if connected else NodeState.LOST
-
-    @property
-    def leaving(self) -> bool:
-        """Whether the node is leaving its graph, or has left it."""
-        return self.state in (NodeState.LEAVING, NodeState.LEFT)
-
     def add(self, hook: Callable[[], None]) -> Callable[[], None]:
         """Call *hook* when the process ends, possibly several times. Return a function that removes it.
 
@@ -126,7 +98,7 @@ class Lifetime:
 
         def remove() -> None:
             if hook in self._hooks:
-                if self.state is NodeState.LEAVING:
+                if self.leaving and not self._gone:
                     # The owner's own zero may have been refused, and the thread that stops the robots may be too
                     # late.
                     self._run([hook])
@@ -139,7 +111,7 @@ class Lifetime:
 
         Otherwise a motion that has not noticed the end yet could move the robot again.
         """
-        return self._open or threading.get_ident() in self._hooking
+        return not self.leaving or threading.get_ident() in self._hooking
 
     def send(self, send: Callable[[M], object], message: M) -> None:
         """Call *send* with *message* if that is allowed, and stop the robots again if they were stopped meanwhile.
@@ -147,20 +119,19 @@ class Lifetime:
         A signal or another thread may come between the check and the client library's own publishing. Without the
         second check the old velocity would follow the zero.
         """
-        if not self._open and not self.admits():
+        if self.leaving and not self.admits():
             return
         try:
             send(message)
         finally:
-            if not self._open and not self.admits():
+            if self.leaving and not self.admits():
                 self._run_hooks()
 
     def stop(self) -> None:
         """Stop the robots: refuse all publishing except by the hooks, and run them on this thread."""
-        if self.state is NodeState.LEFT:
+        if self._gone:
             return
-        self.state = NodeState.LEAVING
-        self._open = False
+        self.leaving = True
         self._run_hooks()
         self._stopped.put(None)
 
@@ -179,7 +150,7 @@ class Lifetime:
 
     def left(self) -> None:
         """Note that the node has left its graph; on the loop."""
-        self.state = NodeState.LEFT
+        self.leaving = self._gone = True
         _process.unwatch(self)
 
     def stop_if_late(self, deadline: float) -> None:
@@ -194,7 +165,7 @@ class Lifetime:
 
     def insist(self) -> None:
         """Deliver the last messages after a signal; in a thread."""
-        if self.state is NodeState.LEAVING:
+        if self.leaving and not self._gone:
             self._insist()
 
     def leave_if_orphaned(self) -> None:

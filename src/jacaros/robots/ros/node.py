@@ -251,7 +251,6 @@ class Node:
 
     def set_connected(self, connected: bool) -> None:
         """Note that the graph was found or lost, and inform the callbacks; on the loop."""
-        self.lifetime.connected(connected)
         if connected != self.connected:
             self.connected = connected
             for callback in list(self._on_connection):

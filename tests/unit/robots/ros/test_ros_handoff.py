@@ -43,7 +43,6 @@ async def test_a_burst_leaves_the_newest_items() -> None:
     in_other_thread(lambda: [handoff.put(n) for n in range(100_000)])
     await turns_until(lambda: len(got) == 3)
     assert got == [99_997, 99_998, 99_999]
-    assert handoff.dropped == 99_997
 
 
 async def test_others_get_their_turn_between_two_items() -> None:
@@ -147,7 +146,6 @@ async def test_items_on_the_loop_are_delivered_immediately_but_one_per_turn() ->
     for number in range(1, 5):
         handoff.put_here(number)
     assert got == [0]
-    assert handoff.dropped == 2
     await turns_until(lambda: len(got) == 3)
     assert got == [0, 3, 4]
     await asyncio.sleep(0)
@@ -165,7 +163,6 @@ async def test_of_what_comes_together_the_newest_are_delivered() -> None:
     handoff.put_here(10, 11)
     await turns_until(lambda: len(got) == 3)
     assert got == [8, 10, 11]
-    assert handoff.dropped == 9
 
 
 async def test_what_comes_on_the_loop_does_not_overtake_what_came_from_a_thread() -> None:

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from jacaros.robots.ros import lifetime as module
-from jacaros.robots.ros.lifetime import Lifetime, NodeState
+from jacaros.robots.ros.lifetime import Lifetime
 from jacaros.robots.ros.open import open_backend
 from jacaros.runtime.clock import WallClock
 
@@ -250,22 +250,7 @@ def test_a_thread_stops_only_what_the_loop_should_have_stopped() -> None:
     first._reported = True
     first.stop_if_late(0.0)
     second.stop_if_late(0.0)
-    assert (first.state, second.state) == (NodeState.LEAVING, NodeState.JOINING)
-
-
-async def test_a_node_knows_its_state() -> None:
-    node: Any = open_backend("memory", WallClock(), "a")
-    assert node.lifetime.state is NodeState.JOINING
-    await node.start()
-    assert node.lifetime.state is NodeState.JOINED
-    node.graph.interrupt()
-    assert node.lifetime.state is NodeState.LOST
-    node.graph.restore()
-    assert node.lifetime.state is NodeState.JOINED
-    node.lifetime.stop()
-    assert node.lifetime.state is NodeState.LEAVING
-    await node.close()
-    assert node.lifetime.state is NodeState.LEFT
+    assert (first.leaving, second.leaving) == (True, False)
 
 
 async def test_goals_under_way_are_cancelled_when_the_process_ends() -> None:
