@@ -31,7 +31,9 @@ def is_apart(code: CodeType) -> bool:
     """Whether a function, with all that it calls, lies off the way."""
     name = code.co_qualname
     return (
-        code.co_filename.startswith((f"{SOURCES}sim/", f"{SOURCES}runtime/clock.py"))
+        code.co_filename.startswith(
+            tuple(f"{SOURCES}{each}" for each in ("sim/", "runtime/clock.py", "runtime/timers.py"))
+        )
         or name in OTHERS
         or name.endswith("__missing__")
     )
