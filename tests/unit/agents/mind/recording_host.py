@@ -226,15 +226,15 @@ def outcome(host: RecordingHost) -> list[str]:
 def programs(cases: str) -> pytest.MarkDecorator:
     """Parametrize a test with programs and their outputs: a line ``name => one | two``, then the program, indented.
 
-    A long output has a line of its own after the name. With names that end in a time limit, as in ``name; 2.5 s``, the test
+    A long output has lines of its own after the name. With names that end in a time limit, as in ``name; 2.5 s``, the test
     gets that of each program, too.
     """
     found: list[Any] = []
     limited = re.search(r"; [0-9.]+ s\s=>", cases) is not None
-    for case in re.split(r"^(?=[^\s=])", cases.lstrip("\n"), flags=re.MULTILINE)[1:]:
+    for case in re.split(r"^(?=[^\s=|])", cases.lstrip("\n"), flags=re.MULTILINE)[1:]:
         name, rest = re.split(r"\s=>", case, maxsplit=1)
-        output, program = rest.split("\n", 1)
-        case = [dedent(program), output.strip().split(" | ") if output else []]
+        output, program = re.split(r"\n(?!\|)", rest, maxsplit=1)
+        case = [dedent(program), output.replace("\n|", " |").strip().split(" | ") if output else []]
         if limited:
             case.append(float(limit[1]) if (limit := re.search(r"; ([0-9.]+) s$", name)) else 60.0)
         found.append(pytest.param(*case, id=name))

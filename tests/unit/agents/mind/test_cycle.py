@@ -5,6 +5,8 @@ from pathlib import Path
 import pytest
 from recording_host import mind, printed, programs
 
+from jacaros.agents.mind.state.act import Completion
+
 CASES = Path(__file__).parents[3] / "conformance"
 
 
@@ -18,7 +20,9 @@ def single_agent_cases() -> list[Path]:
 @pytest.mark.parametrize("case", single_agent_cases(), ids=lambda path: f"{path.parent.name}/{path.stem}")
 @pytest.mark.parametrize("fuel", [1, 3, 100_000])
 def test_staying_with_an_intention_is_invisible_to_programs(case, fuel):
-    host = mind(case.read_text(), name=case.stem, path=str(case), complete=no_environment)
+    host = mind(
+        case.read_text(), name=case.stem, path=str(case), complete=lambda act: Completion(success=False)
+    )
     host.run(fuel)
     expected = [
         line.partition("] ")[2]
@@ -27,13 +31,6 @@ def test_staying_with_an_intention_is_invisible_to_programs(case, fuel):
     ]
     assert host.printed == expected
     assert host.stopped
-
-
-def no_environment(act: object) -> object:
-    from jacaros.agents.mind.state.act import Completion
-
-    del act
-    return Completion(success=False)
 
 
 def test_a_tail_recursive_goal_needs_constant_space():
@@ -129,56 +126,26 @@ dropping all intentions cancels planned events => now | later | end
 a literal can be taken apart without its namespace => a[1][x]a
     !go.
     +!go <- n::a(1)[x] =.. [F, T, A]; a =.. [G, [], []]; .print(F, T, A, G); L = [b, [2], [y]]; b(2)[y] =.. L.
+goal state events keep their order and carry the reason
+=> pending  | executing  | failed ia_failed | executing has_failure_plan | achieved  | finished  | end
+    !g.
+    +!g <- !h; .wait(5); .print(end).
+    +!h <- .fail.
+    -!h.
+    ^!h[state(S)[reason(R)]] <- .print(S, " ", R).
+goal state events report suspension and resumption of waiting goals
+=> pending  | suspended suspend_ia | resumed resume_ia | pending  | executing  | waiting wait(6)[time(20)]
+| suspended suspend_ia | resumed resume_ia | waiting wait(6)[time(20)] | executing  | suspended suspend_ia | end
+    !g.
+    +!g <- !!h; .suspend(h); .wait(5); .resume(h); .wait(5); .suspend(h); .resume(h); .wait(20); .print(end).
+    +!h <- .wait(20); .suspend.
+    ^!h[state(S)[reason(R)]] <- .print(S, " ", R).
 """
 
 
 @programs(PROGRAMS)
 def test_what_a_program_prints(program, output):
     assert printed(program) == output
-
-
-def test_goal_state_events_keep_their_order_and_carry_the_reason():
-    assert printed(
-        """
-        !g.
-        +!g <- !h; .wait(5); .print(end).
-        +!h <- .fail.
-        -!h.
-        ^!h[state(S)[reason(R)]] <- .print(S, " ", R).
-        """
-    ) == [
-        "pending ",
-        "executing ",
-        "failed ia_failed",
-        "executing has_failure_plan",
-        "achieved ",
-        "finished ",
-        "end",
-    ]
-
-
-def test_goal_state_events_report_suspension_and_resumption_of_waiting_goals():
-    assert printed(
-        """
-        !g.
-        +!g <- !!h; .suspend(h); .wait(5); .resume(h); .wait(5); .suspend(h); .resume(h); .wait(20); .print(end).
-        +!h <- .wait(20); .suspend.
-        ^!h[state(S)[reason(R)]] <- .print(S, " ", R).
-        """
-    ) == [
-        "pending ",
-        "suspended suspend_ia",
-        "resumed resume_ia",
-        "pending ",
-        "executing ",
-        "waiting wait(6)[time(20)]",
-        "suspended suspend_ia",
-        "resumed resume_ia",
-        "waiting wait(6)[time(20)]",
-        "executing ",
-        "suspended suspend_ia",
-        "end",
-    ]
 
 
 def test_done_ends_a_handler_and_a_test_without_value_fails():

@@ -66,6 +66,28 @@ the message of a goal without plan has the values of its failure => no relevant 
     b(1). !try(_).
     +!try(X) <- ?b(X); !sub(X).
     -!try(X)[error_msg(M)] <- .print(M).
+terms without value or of another kind fail with the reason
+=> t body_var_not_literal | t body_var_not_literal | t body_var_not_literal
+| u body_var_with_op | u body_var_not_literal | 3[k,q,source(self)] | e arithmetic_error (X = (1 div 0))
+    !s. !e.
+    +!s <- .wait(1); !t({ +!a }); !t(7); !t("a"); !u({ .print(a) }); !u(3); Y = h(3)[q]; !Y[k].
+    +!t(X) <- X.
+    +!u(X) <- !X.
+    -!t(_)[error(E)] <- .print(t, " ", E).
+    -!u(_)[error(E)] <- .print(u, " ", E).
+    +!h(N)[|R] <- .print(N, R).
+    +!e <- .wait(2); X = 1 div 0.
+    -!e[error(E), code(C)] <- .print("e ", E, " ", C).
+every failure of a step has a message
+=> unknown receiver_not_found | empty body_var_without_value | number body_var_not_literal | body body_var_with_op
+    !s.
+    +!s <- for (.member(G, [unknown, empty, number, body])) { !!try(G) }.
+    +!try(G) <- !G.
+    -!try(G)[error(E), error_msg(M)] : .length(M, N) & N > 5 <- .print(G, " ", E).
+    +!unknown <- .send(ghost, tell, p).
+    +!empty <- !X.
+    +!number <- X = 5; +X.
+    +!body <- X = { a; b }; +X.
 """
 
 
@@ -106,51 +128,6 @@ def test_an_observer_gets_the_reason_of_a_failure():
     ]
     assert [state for state, goal, _ in heard if goal == "!b"][-2:] == ["recovered", "finished"]
     assert not [state for state, _, why in heard if why and state != "failed"]
-
-
-def test_terms_without_value_or_of_another_kind_fail_with_the_reason():
-    assert printed(
-        """
-        !s.
-        +!s <- !t({ +!a }); !t(7); !t("a"); !u({ .print(a) }); !u(3); Y = h(3)[q]; !Y[k].
-        +!t(X) <- X.
-        +!u(X) <- !X.
-        -!t(_)[error(E)] <- .print(t, " ", E).
-        -!u(_)[error(E)] <- .print(u, " ", E).
-        +!h(N)[|R] <- .print(N, R).
-        """
-    ) == [
-        "t body_var_not_literal",
-        "t body_var_not_literal",
-        "t body_var_not_literal",
-        "u body_var_with_op",
-        "u body_var_not_literal",
-        "3[k,q,source(self)]",
-    ]
-    assert printed("!g. +!g <- X = 1 div 0. -!g[error(E),code(C)] <- .print(E, " + '" ", C' + ").") == [
-        "arithmetic_error (X = (1 div 0))"
-    ]
-
-
-def test_every_failure_of_a_step_has_a_message():
-    lines = printed(
-        """
-        !s.
-        +!s <- for (.member(G, [unknown, empty, number, body])) { !!try(G) }.
-        +!try(G) <- !G.
-        -!try(G)[error(E), error_msg(M)] <- .length(M, N); .print(G, " ", E, " ", N > 5).
-        +!unknown <- .send(ghost, tell, p).
-        +!empty <- !X.
-        +!number <- X = 5; +X.
-        +!body <- X = { a; b }; +X.
-        """
-    )
-    assert [line.split()[:2] for line in lines] == [
-        ["unknown", "receiver_not_found"],
-        ["empty", "body_var_without_value"],
-        ["number", "body_var_not_literal"],
-        ["body", "body_var_with_op"],
-    ]
 
 
 def test_a_reason_is_worded_only_when_a_plan_asks_for_it(monkeypatch):
