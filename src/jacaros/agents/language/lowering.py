@@ -5,6 +5,7 @@
 3.0
 """
 
+import math
 from collections.abc import Callable, Iterable
 from typing import Any, Final, cast
 
@@ -200,8 +201,12 @@ _LOWER: dict[type, Callable[..., Term]] = {
 # becomes a variable of the new plan (`Closing`), for plans added to the library.
 
 
+MOST_TERMS: Final = 50_000
+"""Terms in a plan that is added at run time. A plan that contains itself twice doubles: terms share, syntax does not."""
+
+
 class NotAPlan(Exception):
-    """Raised when the term is not a plan, body or formula."""
+    """Raised when the term is not a plan, body or formula, or is too large for a plan."""
 
 
 class Reflection:
@@ -211,9 +216,13 @@ class Reflection:
         self.shared = shared
         self._names: dict[int, str] = {}
         self._kept: list[Var] = []
+        self._left: float = math.inf if shared else MOST_TERMS
 
     def term(self, term: Term) -> nodes.Term:
         """Convert any term."""
+        self._left -= 1
+        if self._left < 0:
+            raise NotAPlan(f"not a plan: more than {MOST_TERMS} terms")
         term = deref(term)
         kind = term.__class__
         if kind in NUMBERS:

@@ -37,6 +37,10 @@ a goal can be failed before it is handled => k | failh(1) | after
     +!h(_) <- .print(no).
     -!h(X) <- .print(failh(X)).
     +!x.
+a plan of too many terms is not added => wrong_arguments | []
+    !g.
+    +!g <- .findall(X, .range(X, 1, 50001), L); .add_plan({ @long +!h <- .print(L) }).
+    -!g[error(E)] <- .print(E); .relevant_plans({ +!h }, L); .print(L).
 a goal that another plan fails has a message, and no error => .fail_goal in the plan of !k ended it
     !g. !k.
     +!g <- .wait(1000).
