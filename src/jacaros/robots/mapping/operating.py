@@ -86,6 +86,13 @@ class _Operation:
         for out, value in zip(outs, values, strict=True):
             out.set(value)
 
+    def _refuse(self, message: str, usual: str, *arguments: object) -> NoReturn:
+        """Fail because the answer shows no success, with the reason that the mapping declares, or the usual one."""
+        success = self._part.success
+        if success is not None and success.reason is not None:
+            self._host.fail(message, success.reason)
+        self._host.fail(message, usual, *arguments)
+
 
 class _ServiceOperation(_Operation):
     _client: Client
@@ -100,7 +107,7 @@ class _ServiceOperation(_Operation):
         if not self._codec.succeeded(response):
             name = self._client.name
             message, text = refusal(name, response)
-            self._host.fail(message, "service_refused", Atom(name.lstrip("/")), text)
+            self._refuse(message, "service_refused", Atom(name.lstrip("/")), text)
         self._give(response, outs)
 
 
@@ -134,7 +141,7 @@ class _ActionOperation(_Operation):
         if not self._codec.succeeded(result):
             text = error_text(result)
             told = f"action {self._client.name} did not succeed{f': {text}' if text else ''}"
-            host.fail(told, "aborted", error_code(result), text)
+            self._refuse(told, "aborted", error_code(result), text)
         self._give(result, outs)
 
     def _count(self, begins: bool) -> None:

@@ -74,11 +74,13 @@ class ValuePart:
 
 @dataclass(frozen=True, slots=True)
 class Success:
-    """The field of a response or result that shows success, and its value then."""
+    """The field of a response or result that shows success, its value then, and the reason of failure otherwise; None: the
+    usual one."""
 
     path: FieldPath
     place: FilePosition
     value: object = True
+    reason: str | None = None
 
 
 class OperationKind(StrEnum):
@@ -294,11 +296,16 @@ def _outputs(node: YamlNode) -> tuple[FieldPart, ...]:
 def _success(node: YamlNode) -> Success:
     if not isinstance(node.value, dict):
         return Success(path_of(node, "write the field that is true, or {path: code, is: 0}"), place_of(node))
-    entries = node.mapping("path", "is", required=("path", "is"))
+    entries = node.mapping("path", "is", "else", required=("path",))
+    if "is" not in entries and "else" not in entries:
+        node.wrong(
+            "`success` is incomplete", "write {path: code, is: 0}, or {path: stalled, else: nothing_grasped}"
+        )
     return Success(
         path_of(entries["path"]) if "path" in entries else WHOLE,
         place_of(node),
         constant(entries["is"]) if "is" in entries else True,
+        belief_name(entries["else"]) if "else" in entries else None,
     )
 
 

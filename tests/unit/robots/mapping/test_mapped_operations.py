@@ -268,6 +268,7 @@ async def test_a_request_that_does_not_fit_or_has_no_server(lab: Lab, artifact: 
         (", success: none", "None"),
         (", success: success", 'service_refused(s,"not now")'),
         (", success: {path: message, is: not now}", "None"),
+        (", success: {path: success, else: no_brakes}", "no_brakes"),
     ],
 )
 async def test_a_service_that_refuses(lab: Lab, more: str, reason: str) -> None:

@@ -227,6 +227,8 @@ parameters: {a: {default: 3.0, fields: {path: ., otherwise: 0}}}
   1:40: `otherwise` is for messages | a parameter can have: as: atom, names, unit, scale, offset, round
 parameters: {a: {default: 3, fields: {path: ., as: yaw}}}
   1:38: `as: yaw` is for messages | a parameter can have: as: atom, names, unit, scale, offset, round
+operations: {a: {service: s, success: {path: stalled}}}
+  1:39: `success` is incomplete | write {path: code, is: 0}, or {path: stalled, else: nothing_grasped}
 artifacts: {}
   1:12: no artifacts | write the name of one below `artifacts`
 """

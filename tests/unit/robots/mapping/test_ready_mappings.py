@@ -22,7 +22,14 @@ from played import played
 
 TWIST = "geometry_msgs/msg/Twist"
 STAMPED = "geometry_msgs/msg/TwistStamped"
-MAPPINGS = ("move_base.yaml", "nav2.yaml", "turtlebot2.yaml", "turtlebot3.yaml", "turtlebot4.yaml")
+MAPPINGS = (
+    "gripper.yaml",
+    "move_base.yaml",
+    "nav2.yaml",
+    "turtlebot2.yaml",
+    "turtlebot3.yaml",
+    "turtlebot4.yaml",
+)
 tried: set[tuple[str, str]] = set()
 """File and name of what the tests of this module have looked at."""
 
@@ -227,7 +234,7 @@ def test_bumping() -> None:
         if robot.file == "turtlebot2.yaml":
             assert (Atom("center"), Atom("pressed")) in robot.signals("bumper")
 
-    for file in MAPPINGS[2:]:
+    for file in MAPPINGS[3:]:
         with_ready(file, body)
 
 
@@ -387,6 +394,28 @@ def test_the_poses_of_kilted_are_a_message_of_their_own() -> None:
     assert fill is not None
     (goal,) = fill([poses((1, 2, 90))], 0.0)["poses"]["goals"]
     assert goal["pose"]["position"] == {"x": 1, "y": 2}
+
+
+def test_a_gripper_fails_if_it_grasps_nothing_or_does_not_open() -> None:
+    answers = [(True, False), (False, True), (False, True), (True, False)]
+    wanted: list[float] = []
+
+    async def body(robot: Ready) -> None:
+        async def move(goal: ServerGoal) -> object:
+            wanted.append(goal.request.command.position)
+            stalled, reached = answers.pop(0)
+            return {"stalled": stalled, "reached_goal": reached}
+
+        robot.lab.backend.action_server(
+            "gripper_controller/gripper_cmd", "control_msgs/action/GripperCommand", move
+        )
+        await robot.do("grasp", 0.01)
+        assert await robot.reason("grasp", 0.02) == "nothing_grasped"
+        await robot.do("release", 0.1)
+        assert await robot.reason("release", 0.08) == "not_open"
+        assert wanted == [0.01, 0.02, 0.1, 0.08]
+
+    with_ready("gripper.yaml", body, None)
 
 
 # ---- all of it
