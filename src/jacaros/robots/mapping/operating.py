@@ -6,7 +6,7 @@ A robot that was sent a velocity is always sent zero at the end.
 import asyncio
 import math
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Any, NoReturn
 
 from jacaros.artifacts.env.arbiter import WHEELS
 from jacaros.artifacts.env.artifact import Out
