@@ -3,6 +3,7 @@
 For an array there is one property per element: new elements are defined, changed ones updated, missing ones removed.
 """
 
+import dataclasses
 import itertools
 from collections.abc import Callable
 from functools import partial
@@ -237,15 +238,21 @@ class Elements:
         self._shown: dict[object, ValueRow] = {}
         self._versions = itertools.count()
         self._coming = False
-        self._reading = Reading(part.policy, host.clock, self._deliver, behind=self._is_behind)
+        policy = dataclasses.replace(part.policy, dead_band=0.0)
+        self._reading = Reading(policy, host.clock, self._deliver, behind=self._is_behind)
         host.at_dispose(self._reading.close)
 
     def take(self, rows: list[ValueRow], cause: Cause | None) -> None:
         """Handle the elements of a message."""
-        new = {row.key: row for row in rows}
+        new = {row.key: self._kept(row) for row in rows}
         if new != self._wanted:
             self._wanted = new
             self._reading.take((next(self._versions),), cause)
+
+    def _kept(self, row: ValueRow) -> ValueRow:
+        """Return the row that is already shown if the new one hardly differs."""
+        old = self._wanted.get(row.key)
+        return row if old is None or self._part.policy.differ(old.values, row.values) else old
 
     def _is_behind(self) -> bool:
         return self._coming or self._host.has_untaken(self._part.name)

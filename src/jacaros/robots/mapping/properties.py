@@ -126,7 +126,7 @@ def read_property(name: YamlNode, node: YamlNode) -> TopicPart:
     part, entries = _from_topic(name, node, PROPERTY, "a property")
     if not entries:
         return part
-    for key in ("mode", "dead_band", "expire") if part.each is not None else ():
+    for key in ("mode", "expire") if part.each is not None else ():
         if key in entries:
             text = "the properties of elements are those of the newest message"
             entries[key].wrong(text, f"leave `{key}` out, or `each`")

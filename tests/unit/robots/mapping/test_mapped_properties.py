@@ -150,6 +150,13 @@ async def test_one_property_for_each_element(lab: Lab) -> None:
     assert t.held == [("right", 3)]
 
 
+async def test_dead_band_of_elements(lab: Lab) -> None:
+    t = await talk(lab, JOINTS + "    dead_band: 0.5")
+    await joints(t, left=1, right=2)
+    await joints(t, left=1.1, right=3)
+    assert t.held == [("left", 1), ("right", 3)]
+
+
 PART = "{topic: j, type: sensor_msgs/msg/JointState, each: name, fields: [., '/position[i]'], when_changed: true}"
 
 
