@@ -16,7 +16,7 @@ import itertools
 import json
 import shutil
 import tempfile
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
@@ -24,10 +24,11 @@ from typing import Any
 import pytest
 import websockets
 
-from jacaros import Mas
+from jacaros import Mas, run
 from jacaros.look import view
 from jacaros.look.page.page import write_replay
 from jacaros.look.records.recording import Recording
+from played import played
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 PATIENCE = 30.0
@@ -269,6 +270,19 @@ async def browsed(program: str, seen: str, **options: Any) -> AsyncIterator[Page
             await page.wait_for(f"document.querySelector('{seen}')?.checkVisibility()")
             yield page
             assert page.errors == []
+
+
+def browsing(program: str, seen: str, **options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Make a test of a coroutine function that takes the page, see `browsed`; without Chromium it is skipped."""
+
+    def play(scene: Callable[[Page], Awaitable[None]]) -> None:
+        async def main() -> None:
+            async with browsed(program, seen, **options) as page:
+                await scene(page)
+
+        run(main())
+
+    return lambda scene: needs_chromium(played(play)(scene))
 
 
 async def _end(process: asyncio.subprocess.Process) -> None:

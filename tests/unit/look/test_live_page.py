@@ -1,13 +1,9 @@
 """The live page in a real browser: it follows the run, changes its world, goes back in time, and survives its server."""
 
-from collections.abc import Awaitable, Callable
+from devtools import browsed, browsing, chromium, needs_chromium
 
-from devtools import Page, browsed, chromium, needs_chromium
-
-import jacaros
 from jacaros import Mas
 from jacaros.look import view
-from played import played
 
 WORLD = """
 name: lab
@@ -17,15 +13,8 @@ doors: [{name: gate, segment: [[1, -3], [1, -2]], open: false}]
 robots: [{name: turtlebot, pose: {x: -1, y: 0}}]
 """
 PROGRAM = "!live. +!live <- .print(hello); .wait(100); .print(again); .wait(nothing)."
+on_the_page = browsing(PROGRAM, ".robot", world=WORLD)
 FORM = ".numbers:has([name=x])"
-
-
-def browsing(test: Callable[[Page], Awaitable[None]]) -> None:
-    async def main() -> None:
-        async with browsed(PROGRAM, ".robot", world=WORLD) as page:
-            await test(page)
-
-    jacaros.run(main())
 
 
 def pixel(x: float, y: float) -> str:
@@ -37,8 +26,7 @@ def pixel(x: float, y: float) -> str:
     }})()"""
 
 
-@needs_chromium
-@played(browsing)
+@on_the_page
 async def test_a_robot_is_dragged(page) -> None:
     begin, end = await page.evaluate(pixel(-1, 0)), await page.evaluate(pixel(1, 2))
     await page.drag(*begin, *end)
@@ -49,8 +37,7 @@ async def test_a_robot_is_dragged(page) -> None:
     await page.wait_for("document.querySelector('#log').innerText.includes('turtlebot moved')")
 
 
-@needs_chromium
-@played(browsing)
+@on_the_page
 async def test_doors_obstacles_and_batteries_change_by_keyboard(page) -> None:
     await page.evaluate("document.querySelector('[data-tool=\"door gate\"]').focus()")
     await page.press("Enter")
@@ -74,8 +61,7 @@ async def test_doors_obstacles_and_batteries_change_by_keyboard(page) -> None:
     await page.wait_for("document.querySelector('.robot .level').textContent === '33 %'")
 
 
-@needs_chromium
-@played(browsing)
+@on_the_page
 async def test_a_rejected_change_gives_the_reason(page) -> None:
     await page.click("[data-tool=obstacle]")
     x, y = await page.evaluate(pixel(-1, 0))
@@ -84,8 +70,7 @@ async def test_a_rejected_change_gives_the_reason(page) -> None:
     assert not page.mas.world.obstacles
 
 
-@needs_chromium
-@played(browsing)
+@on_the_page
 async def test_the_page_goes_back_in_time_and_back_to_live(page) -> None:
     await page.wait_for("document.querySelector('#log').innerText.includes('again')")
     assert await page.texts(".onair") == ["Live"]
@@ -109,8 +94,7 @@ async def test_the_past_stays_available_after_the_run() -> None:
         assert "hello" in await page.text("#log")
 
 
-@needs_chromium
-@played(browsing)
+@on_the_page
 async def test_a_page_open_for_days_drops_old_records(page) -> None:
     kept = await page.evaluate(
         """Promise.all(["run", "world", "log"].map((name) => import(`./${name}.js`))).then(([r, w, l]) => {
@@ -129,8 +113,7 @@ async def test_a_page_open_for_days_drops_old_records(page) -> None:
     assert battery == 50
 
 
-@needs_chromium
-@played(browsing)
+@on_the_page
 async def test_the_page_remembers_tab_and_theme(page) -> None:
     await page.click("#theme")
     await page.click("#tab-program")
@@ -140,8 +123,7 @@ async def test_the_page_remembers_tab_and_theme(page) -> None:
     assert await page.evaluate("document.documentElement.dataset.theme") == theme
 
 
-@needs_chromium
-@played(browsing)
+@on_the_page
 async def test_a_world_of_any_size_is_drawn(page) -> None:
     for size in (0.01, 1e4, 1e12):
         await page.evaluate(

@@ -1,11 +1,6 @@
 """The controls of the live page in a real browser: pause, step, breakpoints, console, and errors at the control."""
 
-from collections.abc import Awaitable, Callable
-
-from devtools import Page, browsed, needs_chromium
-
-import jacaros
-from played import played
+from devtools import Page, browsing
 
 PROGRAM = """
 count(0).
@@ -15,14 +10,7 @@ count(0).
    <- -+count(N + 1).
 +ready <- .print(steady).
 """
-
-
-def browsing(test: Callable[[Page], Awaitable[None]]) -> None:
-    async def main() -> None:
-        async with browsed(PROGRAM, ".intention") as page:
-            await test(page)
-
-    jacaros.run(main())
+on_the_page = browsing(PROGRAM, ".intention")
 
 
 SHOWN = """Number([...document.querySelectorAll('.beliefs code')].map((each) =>
@@ -48,8 +36,7 @@ def last(kind: str) -> str:
     return f"[...document.querySelectorAll('.console .{kind}')].at(-1)?.innerText"
 
 
-@needs_chromium
-@played(browsing)
+@on_the_page
 async def test_pause_stops_the_run_and_a_step_advances_it(page) -> None:
     await page.evaluate("document.querySelector('.pause-run').focus()")
     await page.press("Enter")
@@ -67,8 +54,7 @@ async def test_pause_stops_the_run_and_a_step_advances_it(page) -> None:
     assert count(page) > held + 1
 
 
-@needs_chromium
-@played(browsing)
+@on_the_page
 async def test_a_breakpoint_on_a_line_hits_and_shows_the_line(page) -> None:
     await page.click("#tab-program")
     await page.wait_for("document.querySelectorAll('.code-line').length > 5")
@@ -91,8 +77,7 @@ async def test_a_breakpoint_on_a_line_hits_and_shows_the_line(page) -> None:
     await page.wait_for("!document.querySelector('.debug-state').checkVisibility()")
 
 
-@needs_chromium
-@played(browsing)
+@on_the_page
 async def test_a_breakpoint_without_a_line_is_rejected_at_the_field(page) -> None:
     await page.click(".popover summary")
     await page.click(".window .entry")
@@ -101,8 +86,7 @@ async def test_a_breakpoint_without_a_line_is_rejected_at_the_field(page) -> Non
     await page.wait_for("document.querySelector('.bubble')?.innerText.includes('expected a file and a line')")
 
 
-@needs_chromium
-@played(browsing)
+@on_the_page
 async def test_a_breakpoint_on_a_condition_is_set_and_an_invalid_one_rejected(page) -> None:
     await page.click(".popover summary")
     await page.evaluate(
@@ -120,8 +104,7 @@ async def test_a_breakpoint_on_a_condition_is_set_and_an_invalid_one_rejected(pa
     assert count(page) % 7 == 0
 
 
-@needs_chromium
-@played(browsing)
+@on_the_page
 async def test_the_console_asks_adds_and_removes_and_remembers(page) -> None:
     await say(page, "?count(N)")
     await page.wait_for(f"{last('answer')}?.startsWith('N = ')")
@@ -143,16 +126,14 @@ async def test_the_console_asks_adds_and_removes_and_remembers(page) -> None:
     assert await page.evaluate("document.activeElement.value") == "+ready"
 
 
-@needs_chromium
-@played(browsing)
+@on_the_page
 async def test_a_goal_is_dropped_at_its_card(page) -> None:
     await page.click("[aria-label='Drop !live']")
     await page.wait_for("!document.querySelector('.intention')")
     assert "live" not in str(page.mas.agent("bob").goals)
 
 
-@needs_chromium
-@played(browsing)
+@on_the_page
 async def test_a_button_receives_clicks_while_its_card_changes(page) -> None:
     x, y = await page.evaluate(
         "(() => { const box = document.querySelector('.intention .ask').getBoundingClientRect();"

@@ -1,12 +1,8 @@
 """Questions of agents to a person on the live page, in a real browser, and on the page of a recording."""
 
-from collections.abc import Awaitable, Callable
+from devtools import browsing, needs_chromium, replayed
 
-from devtools import Page, browsed, needs_chromium, replayed
-
-import jacaros
 from jacaros.look.page.recorder import Recorder
-from played import played
 
 PROGRAM = """
 { include("$jacaros/artifacts.asl") }
@@ -21,21 +17,13 @@ PROGRAM = """
      +name(Name).
 +answered(Id, Answer, By) <- +said(Id, By).
 """
-
-
-def browsing(test: Callable[[Page], Awaitable[None]]) -> None:
-    async def main() -> None:
-        async with browsed(PROGRAM, ".asked") as page:
-            await test(page)
-
-    jacaros.run(main())
+on_the_page = browsing(PROGRAM, ".asked")
 
 
 ANSWERS = "document.querySelectorAll('.answers :is(button, input)')"
 
 
-@needs_chromium
-@played(browsing)
+@on_the_page
 async def test_questions_are_answered_by_keyboard(page) -> None:
     await page.wait_for("document.querySelectorAll('.asked').length === 2")
     await page.wait_for(
