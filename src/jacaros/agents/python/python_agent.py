@@ -112,6 +112,10 @@ class PythonAgent:
     def on_property(self, change: PropertyChange) -> object:
         """Called with every property change of focused artifacts, as `on_signal`."""
 
+    def accept_kill(self, killer: str) -> bool:
+        """Return whether the agent named *killer* may end this one with ``.kill_agent``."""
+        return True
+
     # --- what it is ----------------------------------------------------------------------------------------
 
     @property
@@ -275,9 +279,46 @@ class PythonAgent:
         """Return the names of all agents, in order of creation."""
         return tuple(self._host.system.agent_names())
 
+    def create_agent(self, name: str, source: str | None = None, agent_class: str | None = None) -> str:
+        """Create an agent and start it; return its name, which differs from *name* if that is taken.
+
+        Args:
+            name: of the agent.
+            source: its program (``bob.asl``, ``bob.py``), by default NAME.asl.
+            agent_class: its class, for an AgentSpeak agent as in ``ag-class``.
+
+        Raises:
+            JacarosError: it cannot be created; the reason is logged.
+        """
+        classes = {} if agent_class is None else {"agentClass": agent_class}
+        made = self._host.system.create_agent(name, source, classes)
+        if made is None:
+            raise JacarosError(f"cannot create agent {name}; see the log for the reason")
+        return made
+
+    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
+        """End an agent after *delay* seconds; return False if it does not exist or refuses."""
+        return self._host.system.kill_agent(name, delay, self.name)
+
     def stop_system(self, exit_code: int = 0, delay: float = 0.0) -> None:
         """End the run after *delay* seconds, with an exit code."""
         self._host.stop_system(delay, exit_code)
+
+    def register_service(self, service: str) -> None:
+        """Register a service that this agent provides with the directory facilitator."""
+        self._host.system.services.register(self.name, service)
+
+    def deregister_service(self, service: str) -> None:
+        """Remove the registration."""
+        self._host.system.services.deregister(self.name, service)
+
+    def subscribe_to_service(self, service: str) -> None:
+        """Subscribe this agent to the present and future providers of a service."""
+        self._host.system.services.subscribe(self.name, service)
+
+    def providers(self, service: str) -> tuple[str, ...]:
+        """Return the agents that provide a service, in order of registration."""
+        return tuple(self._host.system.services.providers(service))
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.name!r})"

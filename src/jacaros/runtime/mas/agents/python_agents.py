@@ -152,9 +152,12 @@ class PythonAgentHost(AgentHost):
             self.mail.receive(message)
 
     def accept_kill(self, killer: str) -> bool:
-        """Return True: another agent may kill this one."""
-        del killer
-        return True
+        """Return whether another agent may kill this one."""
+        try:
+            return bool(self._agent.accept_kill(killer))
+        except Exception as error:
+            self.log("error", f"accept_kill: {error_text(error)}{place_of_fault(error)}")
+            return True
 
     def shut_down_in(self, seconds: float) -> None:
         """Do nothing: it is cancelled at the end."""

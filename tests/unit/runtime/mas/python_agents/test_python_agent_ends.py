@@ -114,6 +114,20 @@ async def fail(self):
     assert result.errors[1:] == [f"[a]   KeyError: 'x' ({tmp_path}/a.py:9, in fail)"]
 
 
+def test_it_may_refuse_to_be_killed(talk: Ran) -> None:
+    result = talk("""
+def accept_kill(self, killer):
+    return killer != "bob"
+
+async def run(self):
+    await self.receive()
+    self.print("alive")
+# bob
+!go. +!go <- .kill_agent(a); .send(a, tell, p). -!go <- .print(refused); .send(a, tell, p).
+""")
+    assert result.of("a") == ["alive"]
+
+
 async def test_it_may_be_ended_before_its_first_step(tmp_path: Path) -> None:
     async with Mas(folder=tmp_path) as mas:
         mas.add_agent("echo", Echo).kill()
@@ -163,3 +177,19 @@ async def run(self):
 """)
     assert result.lines == ["[a] one"]
     assert result.errors == ["[a] warning: the agent did not end within 5 s of its cancellation"]
+
+
+def test_an_error_in_accept_kill_is_logged(tmp_path: Path, talk: Ran) -> None:
+    result = talk("""
+async def run(self):
+    await self.receive()
+
+def accept_kill(self, killer):
+    return self.friends
+# bob
+!go. +!go <- .kill_agent(a); .all_names(L); .print(L).
+""")
+    assert result.lines == ["[bob] [bob]"]
+    assert result.errors == [
+        f"[a] error: accept_kill: AttributeError: A has no attribute 'friends' ({tmp_path}/a.py:7, in accept_kill)"
+    ]

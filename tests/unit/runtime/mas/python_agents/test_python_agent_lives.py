@@ -72,22 +72,36 @@ def test_it_lets_others_have_their_turn(run: Ran) -> None:
     assert result.errors == []
 
 
-def test_an_agent_creates_one_which_ends_the_run(run: Ran) -> None:
+def test_it_creates_and_ends_agents_and_the_run(run: Ran) -> None:
     result = run(
         idle=False,
-        m_mas2j="MAS m { agents: bob; }",
-        bob_asl='!go. +!go <- .create_agent(a, "a.py").',
         a_py="""
+from jacaros.runtime.errors import JacarosError
+
 class A(PythonAgent):
     async def run(self):
-        self.print(self.name, self.agent_names())
+        self.print(self.create_agent("b"), self.create_agent("b"), self.create_agent("c", "c.py"), self.agent_names())
+        await self.sleep(1)
+        self.print(self.kill_agent("b"), self.kill_agent("b"), self.agent_names())
+        try:
+            self.create_agent("d")
+        except JacarosError as error:
+            self.print(error)
         self.stop_system(3)
         self.print("after")
         await self.sleep(1)
         self.print("never")
 """,
+        b_asl='!go. +!go <- .print(b); .create_agent(e, "c.py").',
+        c_py="class C(PythonAgent):\n    async def run(self):\n        self.print(self.name)\n",
     )
-    assert result.of("a") == ['a["bob","a"]', "after"]
+    assert result.of("a") == [
+        'bb_1c["a","b","b_1","c"]',
+        'truefalse["a","b_1","c","e","e_1"]',
+        "cannot create agent d; see the log for the reason",
+        "after",
+    ]
+    assert result.of("e") == ["e"]
     assert result.exit_code == 3
 
 

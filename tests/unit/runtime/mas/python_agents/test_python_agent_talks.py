@@ -146,6 +146,22 @@ async def run(self):
     ]
 
 
+def test_the_directory_facilitator_knows_it(talk: Ran) -> None:
+    result = talk("""
+async def run(self):
+    self.register_service("paint")
+    self.subscribe_to_service("sell")
+    self.print(await self.receive())
+    self.print(self.providers("sell"), self.providers("paint"))
+    self.deregister_service("paint")
+    self.print(self.providers("paint"))
+# bob
+!go. +!go <- .df_search(paint, L); .print(L); .df_register(sell).
+""")
+    assert result.of("bob") == ["[a]"]
+    assert result.of("a") == ['tell from df: provider(bob,"sell")', '["bob"]["a"]', "[]"]
+
+
 def test_all_kinds_of_contents_are_received(talk: Ran) -> None:
     result = talk("""
 async def run(self):
