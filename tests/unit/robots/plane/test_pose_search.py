@@ -39,7 +39,7 @@ def test_all_poses_with_enough_echoes_on_walls_are_found_with_their_number(
         assert set(fits) == {each for each in expected if each[0] >= needed}
 
 
-def test_a_corridor_gives_only_poses_that_differ() -> None:
+def test_a_corridor_gives_only_the_poses_that_match_best() -> None:
     walls = [(x, y) for x in range(1000) for y in (0, 20)]
     floor = [(x, y) for x in range(1000) for y in range(1, 20)]
     echoes = [(0.01 * number, side) for number in range(12) for side in (1.0, -1.0)]
