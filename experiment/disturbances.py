@@ -9,7 +9,7 @@ Draw = random.Random
 FURTHER = 1000
 """Seeds above this have one of the further kinds of disturbances."""
 
-SEEN = 100
+SEEN = 200
 """Seeds above this, in either series, are kept out of what the programs are tuned with."""
 
 DOCK = (1.0, 1.0)

@@ -5,7 +5,6 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.robots.plane.pose import Pose
 from jacaros.robots.world import GroundTruth, World, WorldError, read_world
 from jacaros.robots.world.process import GroundTruthFile
 
@@ -189,9 +188,11 @@ def test_mistakes_in_rooms_and_tools_are_reported(old: str, new: str, message: s
 
 
 def test_a_robot_that_is_carried_does_not_clean_where_it_is_put_down() -> None:
-    flat = vacuuming(0.5)
-    flat.robot("a").put_down(Pose(-1.0, 1.0, 0.0))
+    flat = vacuuming(0.53)
+    flat.place("a", -1.0, 1.0)
     flat.run(0.4)
-    assert left(flat)["hall", "dust"] == pytest.approx(29.0)
-    flat.run(0.6)
-    assert left(flat)["hall", "dust"] == pytest.approx(28.0, abs=0.05)
+    flat.use_tool("a", "")
+    assert left(flat)["hall", "dust"] == pytest.approx(28.96)
+    cleaned = flat.ground_truth.events_of("cleaned")
+    assert cleaned[-1].data["grams"] == pytest.approx(28.96)
+    assert {(event.x, event.y) for event in cleaned} == {(-1.0, 0.0)}

@@ -133,6 +133,12 @@ class Cleaning:
                 self.at_work[robot.name] = ToolAtWork(tool, self.fields)
                 self._tell(robot, "tool_started", {"tool": name})
 
+    def settle(self, robot: Robot) -> None:
+        """Report what the tool of *robot* has removed, from where it was removed: the robot is about to be carried away."""
+        work = self.at_work.get(robot.name)
+        if work is not None:
+            self._tell_removed(robot, work, at_the_end=True)
+
     def step(self, dt: float, robots: dict[str, Robot]) -> None:
         """Run the tools for *dt* seconds; a robot with an empty battery, or one that hangs in the air, does not clean."""
         for name, work in self.at_work.items():

@@ -254,6 +254,11 @@ class World:
         """
         self._people.remove(name)
 
+    def _carry(self, robot: Robot, pose: Pose) -> None:
+        """Put a robot down at *pose*."""
+        self.cleaning.settle(robot)
+        robot.put_down(pose)
+
     def place(self, name: str, x: float, y: float, yaw: float | None = None) -> None:
         """Put a robot down at another place, in metres and radians; the heading is kept unless *yaw* is given.
 
@@ -262,7 +267,7 @@ class World:
         """
         robot = self.robot(name)
         self.check_room(x, y, robot.description.radius, robot.name)
-        robot.put_down(Pose(x, y, robot.yaw if yaw is None else yaw))
+        self._carry(robot, Pose(x, y, robot.yaw if yaw is None else yaw))
         self._note(robot, "robot_placed", {"x": x, "y": y, "yaw": robot.yaw})
         self._sample_robots(all_of_them=True)
 
@@ -421,7 +426,7 @@ class World:
                 robot.blocked_wheel = fault.wheel
                 return partial(setattr, robot, "blocked_wheel", "")
             case "kidnapped_robot":
-                self.robot(fault.robot).put_down(fault.pose)
+                self._carry(self.robot(fault.robot), fault.pose)
             case "battery_drop":
                 battery = self.robot(fault.robot).battery
                 battery.level = min(battery.level, fault.level)
