@@ -24,7 +24,7 @@ QUESTION = f"question 1: {ASKED} 1) retry 2) skip 3) stop"
 
 
 @pytest.mark.parametrize(("status", "more"), [(0, "advice(retry)."), (1, "advice(stop)."), (1, "")])
-def test_help_or_stop_ends_the_run_unless_a_person_says_retry(tmp_path: Path, status: int, more: str) -> None:
+def test_help_or_stop_ends_the_run_without_the_answer_retry(tmp_path: Path, status: int, more: str) -> None:
     program = PROGRAM.replace("OPERATOR", OPERATOR).replace("!help(no_current)", "!help_or_stop(no_current)")
     (tmp_path / "robot.asl").write_text(program + more)
     ran = run_project(tmp_path / "robot.asl", until_idle=True)

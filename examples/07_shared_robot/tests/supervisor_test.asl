@@ -80,7 +80,7 @@
      !assert_did(hand_over, 1);
      !assert_not_did(.stopMAS(_, _)).
 
-@tells_and_ends_the_run_when_it_misses_the_dock_and_nobody_helps[test, timeout(120000)]
+@tells_and_ends_the_run_when_it_misses_the_dock_without_help[test, timeout(120000)]
 +!test_missed
   <- !fakes;
      !fake_action(driveTo(1, 1), failed(blocked, "something stands in my way"));
