@@ -219,10 +219,10 @@ def is_ground(term: Term) -> bool:
     return is_flat(term) or not free_variables(term)
 
 
-def free_variables(term: Term, found: list[Var] | None = None) -> list[Var]:
+def free_variables(term: Term) -> list[Var]:
     """Return the unbound variables of a term, each once, in order of appearance."""
-    found = [] if found is None else found
-    met = {id(variable) for variable in found}
+    found: list[Var] = []
+    met: set[int] = set()
     stack = [term]
     while stack:
         term = stack.pop()

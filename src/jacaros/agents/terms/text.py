@@ -217,10 +217,10 @@ def _write(term: Term) -> str:
     return "".join(written)
 
 
-def _separated(terms: Iterable[Term], separator: str = ",") -> _Pieces:
+def _separated(terms: Iterable[Term]) -> _Pieces:
     pieces: _Pieces = []
     for term in terms:
-        pieces += (separator, term)
+        pieces += (",", term)
     return pieces[1:]
 
 
