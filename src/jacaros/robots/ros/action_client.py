@@ -7,7 +7,7 @@ Everything here happens on the loop.
 import asyncio
 import hashlib
 import secrets
-from collections.abc import Awaitable, Callable, Coroutine, Iterable
+from collections.abc import Callable, Coroutine, Iterable
 from contextlib import suppress
 from typing import Any, Literal, Protocol, TypeVar
 
@@ -124,15 +124,12 @@ class GoalHandle:
                 f"whether it cancels goal {self.goal_id}"
             ) from None
 
-    def abandon(self, afterwards: Callable[[], Awaitable[object]] | None = None) -> None:
+    def abandon(self) -> None:
         """Cancel the goal and return immediately.
 
         Its client owns the goal until it has ended, and logs a warning if that takes more than 5 s.
-
-        Args:
-            afterwards: awaited when the goal has ended.
         """
-        self._sender.abandon(self, afterwards)
+        self._sender.abandon(self)
 
     async def gone(self) -> bool:
         """Wait until a goal that is being cancelled has ended or continues. Return False if that takes too long."""
@@ -370,14 +367,10 @@ class ActionClient:
         self._leaves(pending)
         self.wire.cancel_goal(pending.goal_id)
 
-    def abandon(self, pending: GoalHandle, afterwards: Callable[[], Awaitable[object]] | None = None) -> None:
+    def abandon(self, pending: GoalHandle) -> None:
         """Cancel a goal that is no longer needed: now if it was accepted, else as soon as it is.
 
         It remains a goal of this client until it has ended: newer goals of the action wait for that.
-
-        Args:
-            pending: the goal.
-            afterwards: awaited when it has ended.
         """
         if pending.end is not None:
             return
@@ -386,7 +379,7 @@ class ActionClient:
         if pending.accepted:
             with suppress(ServiceError):  # the server cannot be reached, so the goal will soon be lost
                 self.wire.cancel_goal(pending.goal_id)
-        self._keep(self._see_off(pending, afterwards))
+        self._keep(self._see_off(pending))
 
     def _keep(self, work: Coroutine[Any, Any, None]) -> None:
         task = asyncio.get_running_loop().create_task(work)
@@ -550,7 +543,7 @@ class ActionClient:
                 )
         return self.clock.elapsed - began
 
-    async def _see_off(self, pending: GoalHandle, afterwards: Callable[[], Awaitable[object]] | None) -> None:
+    async def _see_off(self, pending: GoalHandle) -> None:
         try:
             await pending.outcome(ENDING)
         except CallTimedOut:
@@ -559,11 +552,8 @@ class ActionClient:
                     f"warning: action {self.name}: an abandoned goal has not ended {ENDING:g} s after it was cancelled; "
                     "the robot may still be moving"
                 )
-            return
-        except ServiceError:  # lost with its server, rejected, or its client was closed: no caller is waiting
-            return
-        if afterwards is not None:
-            await afterwards()
+        except ServiceError:
+            pass  # lost with its server, rejected, or its client was closed: no caller is waiting
 
     def _finish(self, goal_id: str, end: GoalOutcome | ServiceError) -> None:
         pending = self._goals.get(goal_id)
