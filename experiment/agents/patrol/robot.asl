@@ -18,8 +18,7 @@ recharges(0).
 +!arrived(_) : shift(N) & recharges(N) & .count(unreachable(_, _), Missing)
   <- .stopMAS(0, Missing).
 
--!keep_charged
-  <- .stopMAS(0, 1).
+-!keep_charged <- .stopMAS(0, 1).
 
 // The dock charges a robot that stands in it: no need to drive in and out.
 +!drive_into_dock
