@@ -50,7 +50,7 @@ lowest(100).  // lowest battery level on arrival in the dock, in percent
 // charge_first needs the same wheels: the robot stops immediately, and when that goal has ended, driveTo continues to the
 // same corner.
 @charge[urgency(10)]
-+diagnostics("Low Battery") : next(Corner)
++diagnostics("Low Battery") : next(Corner) & not .intend(recharge)
   <- .print("battery low on the way to corner ", Corner);
      !recharge;
      .print("battery full, on to corner ", Corner).
