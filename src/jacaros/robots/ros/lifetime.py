@@ -246,20 +246,21 @@ class _Process:
     def serving(self, serve: Serve) -> Iterator[None]:
         """Call *serve* with each signal, after the robots were stopped; on the main thread only."""
         outer, self._serve = self._serve, serve
-        self._take_signals()
+        # A handler may have replaced ours while a node stayed in its graph.
+        self._take_signals(again=True)
         try:
             yield
         finally:
             self._serve = outer
             self._give_signals_back()
 
-    def _take_signals(self) -> None:
-        if self._previous or threading.current_thread() is not threading.main_thread():
+    def _take_signals(self, again: bool = False) -> None:
+        if self._previous and not again or threading.current_thread() is not threading.main_thread():
             return
         for number in SIGNALS:
             before = signal.getsignal(number)
             # An ignored signal (nohup) stays ignored; a handler from outside Python (None) stays installed.
-            if before not in (signal.SIG_IGN, None):
+            if before not in (signal.SIG_IGN, None, self._at_signal):
                 self._previous[number] = before
                 signal.signal(number, self._at_signal)
 

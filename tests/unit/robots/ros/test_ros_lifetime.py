@@ -164,6 +164,20 @@ def test_handlers_are_given_back() -> None:
     assert [signal.getsignal(number) for number in module.SIGNALS] == before
 
 
+@pytest.mark.usefixtures("process")
+def test_a_run_takes_signals_although_another_handler_has_replaced_ours() -> None:
+    before = signal.getsignal(signal.SIGTERM)
+    lifetime = Lifetime(print)
+    lifetime.add(lambda: None)
+    signal.signal(signal.SIGTERM, before)
+    served: list[int] = []
+    with module.serving(lambda number, frame: served.append(number)):
+        signal.raise_signal(signal.SIGTERM)
+    assert served == [signal.SIGTERM]
+    lifetime.leave_now()
+    signal.signal(signal.SIGTERM, before)
+
+
 class Wire:
     """What a robot is sent.
 
