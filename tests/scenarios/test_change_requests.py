@@ -83,9 +83,7 @@ def test_the_other_robot_takes_the_rooms_of_one_that_recharges(side: str) -> Non
 def test_the_present_program_does_not_stop(side: str) -> None:
     result = run(SCENARIOS["house_cleaning"], side, faults_of(STOP))
     complaints = judge(STOP, result).complaints
-    assert any(
-        each.startswith("the tool was not switched off after the bump at 5.9 s") for each in complaints
-    )
+    assert any(each.startswith("the tool was not switched off after the bump at") for each in complaints)
     assert any(each.startswith("the robot moved after the bump at") for each in complaints)
 
 

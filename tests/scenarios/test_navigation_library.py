@@ -49,7 +49,7 @@ def test_the_plans_with_faked_robots() -> None:
     suites = collect([TESTS])
     assert [suite.error for suite in suites if suite.error is not None] == []
     outcomes = [outcome for suite in suites for outcome in run_suite(suite)]
-    assert len(outcomes) == 55
+    assert len(outcomes) == 59
     assert [outcome.test.name for outcome in outcomes if not outcome.passed] == []
 
 

@@ -107,7 +107,7 @@ place(c, 3, 0, 0).
   <- +arrives_within(0.05);
      +pose(1.1, 0, 0);
      !fakes;
-     !patrol([a], 1);
+     !round([a]);
      !assert_true(unreachable(a, not_there));
      !assert_false(been(a));
      !assert_did(navigate_to(1, 0, 0), 3).

@@ -255,7 +255,7 @@ class _Process:
             self._give_signals_back()
 
     def _take_signals(self, again: bool = False) -> None:
-        if self._previous and not again or threading.current_thread() is not threading.main_thread():
+        if (self._previous and not again) or threading.current_thread() is not threading.main_thread():
             return
         for number in SIGNALS:
             before = signal.getsignal(number)

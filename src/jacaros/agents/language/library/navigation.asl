@@ -167,18 +167,18 @@ patience(300000) :- not slowest_percent(_).
      }.
 
 +!reach(Place, true)
-  <- !arrive_at(Place, 1);
+  <- !arrive_at(Place, tries(1));
      .abolish(visited(_));
      .abolish(unreachable(Place, _)).
 
 // Late wheels roll on, and the estimate of the pose may still change: go there again.
-+!arrive_at(Place, Number)
++!arrive_at(Place, tries(Number))
   <- !go_to(Place);
      .wait(not beside(Place), 1000, _);
-     !found_at(Place, Number).
+     !found_at(Place, tries(Number)).
 
-+!found_at(Place, Number) : beside(Place) & attempts_allowed(Most) & Number < Most
-  <- !arrive_at(Place, Number + 1).
++!found_at(Place, tries(Number)) : beside(Place) & attempts_allowed(Most) & Number < Most
+  <- !arrive_at(Place, tries(Number + 1)).
 
 +!found_at(Place, _) : beside(Place)
   <- .fail(error(action_failed), error_msg("the robot stands beside the place"), env_failure_reason(not_there)).
