@@ -362,6 +362,7 @@ class Environment(Setting, WorkspaceTree):
         self._find_type = find_type
         self._registry = Registry()
         self._own: list[Workspace] = []
+        self._watchers_of_own: list[Callable[[Workspace], None]] = []
         WorkspaceTree.__init__(self, self._make)
         self.create_workspace("/main")
 
@@ -382,6 +383,15 @@ class Environment(Setting, WorkspaceTree):
         """Call *callback* with the id of every disposed artifact, after its observers have been notified."""
         self._registry.when_disposed.append(callback)
 
+    def own(self) -> tuple[Workspace, ...]:
+        """Return the workspaces of this process, the oldest first."""
+        return tuple(self._own)
+
+    def watch_own(self, watcher: Callable[[Workspace], None]) -> Callable[[], None]:
+        """Call *watcher* with every workspace that is created. Return a function that ends this."""
+        self._watchers_of_own.append(watcher)
+        return lambda: self._watchers_of_own.remove(watcher) if watcher in self._watchers_of_own else None
+
     def _make(self, path: str, above: ports.Workspace | None) -> Workspace:
         if above is not None and above not in self._own:
             message = f"workspace {above.path} is remote: create {path} in the process that serves it"
@@ -389,6 +399,8 @@ class Environment(Setting, WorkspaceTree):
         workspace = Workspace(path, self._registry, self, self._find_type)
         add_standard_artifacts(workspace, self)
         self._own.append(workspace)
+        for watcher in tuple(self._watchers_of_own):
+            watcher(workspace)
         return workspace
 
     def execute(self, request: OperationRequest) -> UnderWay:

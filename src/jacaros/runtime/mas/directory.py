@@ -14,6 +14,7 @@ from typing import Protocol
 
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules import belief_update
+from jacaros.agents.mind.rules.proc_msg import UNDELIVERED
 from jacaros.agents.mind.state.act import SpeechAct
 from jacaros.agents.mind.state.plan import Failure
 from jacaros.agents.terms.collections import detached, holds_collection
@@ -37,7 +38,7 @@ class Mailbox(Protocol):
 
 
 class Participants(Protocol):
-    """Participants of the system other than agents of this run. Their names differ from those of all agents."""
+    """Participants of the system other than agents of this run."""
 
     def names(self) -> Sequence[str]:
         """Return the known names, in a stable order."""
@@ -57,6 +58,7 @@ class Directory:
         self._hosts: dict[str, AgentHost] = {}
         self._names: tuple[str, ...] | None = ()
         self._others: list[Participants] = []
+        self._elsewhere: list[Participants] = []
         self._watchers: list[Callable[[str, bool], None]] = []
         self.find: Callable[[str], AgentHost | None] = self._hosts.get
 
@@ -83,14 +85,27 @@ class Directory:
         for watcher in tuple(self._watchers):
             watcher(name, present)
 
-    def join(self, others: Participants) -> Callable[[], None]:
-        """Add other participants. Return a function that removes them."""
-        self._others.append(others)
-        return lambda: self._others.remove(others) if others in self._others else None
+    def join(self, others: Participants, elsewhere: bool = False) -> Callable[[], None]:
+        """Add other participants. Return a function that removes them.
+
+        Args:
+            others: the participants.
+            elsewhere: they are of other systems, so an agent may have the name of one of them, and is found first.
+        """
+        place = self._elsewhere if elsewhere else self._others
+        place.append(others)
+        return lambda: place.remove(others) if others in place else None
 
     def find_other(self, name: str) -> Mailbox | None:
         """Return the mailbox of a participant that is not an agent of this run, or None."""
-        for others in self._others:
+        return self._found(name, self._others) or self._found(name, self._elsewhere)
+
+    def find_here(self, name: str) -> Mailbox | None:
+        """Return the mailbox of an agent or participant of this system, or None."""
+        return self._hosts.get(name) or self._found(name, self._others)
+
+    def _found(self, name: str, places: Sequence[Participants]) -> Mailbox | None:
+        for others in places:
             found = others.find(name)
             if found is not None:
                 return found
@@ -100,8 +115,9 @@ class Directory:
         """Return the names of all agents and other participants."""
         if self._names is None:
             self._names = tuple(self._hosts)
-        if self._others:
-            return (*self._names, *(name for others in self._others for name in others.names()))
+        if self._others or self._elsewhere:
+            others = (*self._others, *self._elsewhere)
+            return (*self._names, *(name for each in others for name in each.names()))
         return self._names
 
     def free_name(self, wanted: str) -> str:
@@ -113,7 +129,7 @@ class Directory:
         return name
 
     def _is_taken(self, name: str) -> bool:
-        return name in self._hosts or self.find_other(name) is not None
+        return self.find_here(name) is not None
 
     def __iter__(self) -> Iterator[AgentHost]:
         return iter(list(self._hosts.values()))
@@ -163,15 +179,22 @@ class Mailboxes:
         receiver.receive(message)
         return True
 
-    def returned(self, message: SpeechAct) -> None:
+    def returned(self, message: SpeechAct, reason: str = "receiver_not_found") -> None:
         """Report to the sender of an accepted message that it did not reach its receiver.
 
-        The sender gets a message ``undelivered`` about it. A question that it waits for fails with ``receiver_not_found``.
+        The sender gets a message ``undelivered`` about it, with the content ``undelivered(Content,Reason)``. A question
+        that it waits for fails with ``error(Reason)``.
+
+        Args:
+            message: the message.
+            reason: why: ``receiver_not_found``, ``mailbox_full``, ``not_permitted``, ``member_lost``, or ``unconfirmed`` if
+                it may have arrived.
         """
         sender = self._find(message.sender)
         if sender is not None:
             id = f"{message.id}_undelivered"
-            told = ("undelivered", message.receiver, message.sender, message.content, id, message.id)
+            content = (UNDELIVERED, message.content, atom(reason))
+            told = ("undelivered", message.receiver, message.sender, content, id, message.id)
             # No step could fail here, so a sender whose mailbox is full gets no report.
             with suppress(Failure):
                 sender.receive(SpeechAct(*told))

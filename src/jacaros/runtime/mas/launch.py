@@ -25,7 +25,7 @@ from jacaros.runtime.mas.agents.programs import PROJECTS, source_folders
 from jacaros.runtime.mas.console import RunConsole
 from jacaros.runtime.mas.deployment import AgentSpec, Deployment, ProjectError
 from jacaros.runtime.mas.options import RunOptions
-from jacaros.runtime.mas.system import System
+from jacaros.runtime.mas.system import Join, System
 from jacaros.runtime.mas.watchdog import Watchdog
 
 GARBAGE_THRESHOLD = 100_000
@@ -90,6 +90,7 @@ def launch(
     console: RunConsole,
     when_started: Callable[[System], None] | None = None,
     own_process: bool = True,
+    join: Join | None = None,
 ) -> int:
     """Run a project to its end. Return the exit code.
 
@@ -98,6 +99,7 @@ def launch(
         options: run options.
         console: its outputs.
         when_started: called when everything has been created, before the first agent has its turn.
+        join: joins a fleet.
         own_process: whether settings of the whole process may be changed: signals, garbage collector, thread switches.
 
     Raises:
@@ -115,7 +117,7 @@ def launch(
     clock = chosen_clock(options, console)
 
     async def main() -> int:
-        mas = System(deployment, clock, console, options)
+        mas = System(deployment, clock, console, options, join=join)
         loop = asyncio.get_running_loop()
         loop.set_exception_handler(lambda _, context: _escaped(mas, context))
 

@@ -36,6 +36,8 @@ if TYPE_CHECKING:
     from jacaros.runtime.trace import Tracer
 
 
+Join = Callable[["System"], Awaitable[Callable[[], Awaitable[None]]]]
+"""Joins a system to a fleet. Returns a function that leaves it."""
 OUT_OF_MEMORY = 137
 """Exit code of a run that ended for lack of memory: that of a process killed by the kernel."""
 RESERVE = 32 << 20
@@ -53,6 +55,7 @@ class System:
         prepare: returns the part of a program to run. Default: all of it.
         when_made: called with every agent before it begins.
         when_idle: called whenever the run has become idle.
+        join: joins a fleet, when the environment has been created and no agent has begun.
 
     Attributes:
         directory: agents by name, and other participants.
@@ -81,6 +84,7 @@ class System:
         prepare: Callable[[Program, PythonCode], Program] | None = None,
         when_made: Callable[[AgentHost], None] | None = None,
         when_idle: Callable[[], None] | None = None,
+        join: "Join | None" = None,
     ) -> None:
         self.deployment = deployment
         self.clock = clock
@@ -99,8 +103,10 @@ class System:
         self.idleness.turns = self.scheduler
         self._run_environment: RunEnvironment | None = None
         self._tracer: Tracer | None = None
-        self._situated: Callable[[Environment], None] | None = None
+        self._situated: list[Callable[[Environment], None]] = []
         self._closers: list[Callable[[], Awaitable[None]]] = []
+        self._join = join
+        self._leave: Callable[[], Awaitable[None]] = _stay
         self._history: History | None = None
         self._keeps_history = False
         self._debugger: Debugger | None = None
@@ -153,6 +159,11 @@ class System:
         return code
 
     @property
+    def has_environment(self) -> bool:
+        """Whether agents of the project use artifacts."""
+        return self._has_environment
+
+    @property
     def environment(self) -> "Environment | None":
         """Workspaces and artifacts; None before their first use."""
         return self._run_environment.environment if self._run_environment is not None else None
@@ -166,14 +177,11 @@ class System:
 
     def when_situated(self, callback: "Callable[[Environment], None]") -> Callable[[], None]:
         """Call *callback* with the environment, now or when it is created. Return a function that ends this."""
-        self._situated = callback
+        self._situated.append(callback)
         if self._run_environment is not None:
             callback(self._run_environment.environment)
 
-        def end() -> None:
-            self._situated = None
-
-        return end
+        return lambda: self._situated.remove(callback) if callback in self._situated else None
 
     @property
     def debugger(self) -> "Debugger":
@@ -240,6 +248,8 @@ class System:
         await self.ros.start()
         if self._has_environment and self._has_workspace_setup():
             await self.run_environment().set_up(self.deployment)
+        if self._join is not None:
+            self._leave = await self._join(self)
         await self.ros.guard()
         hosts = list(map(lifecycle.add, self.deployment.agents, programs))
         if self.options.explain or any(map(asks_why, programs)):
@@ -283,8 +293,8 @@ class System:
                 self.deployment, self._modules, self.clock, resources, self.console, self.activity, self.fail
             )
             self._run_environment.environment.tracer = self._tracer
-            if self._situated is not None:
-                self._situated(self._run_environment.environment)
+            for callback in tuple(self._situated):
+                callback(self._run_environment.environment)
         return self._run_environment
 
     def _situate(self, host: AgentHost, spec: AgentSpec) -> None:
@@ -402,6 +412,7 @@ class System:
                 steps.push_async_callback(host.close)
             for host in reversed(hosts):
                 steps.callback(host.end)
+            steps.push_async_callback(self._leave)
             # A signal may just have stopped the robots. The in-process graph delivers that in the next turn.
             steps.push_async_callback(asyncio.sleep, 0.0)
 
@@ -445,3 +456,7 @@ class System:
             FileNotFoundError: it does not exist.
         """
         return self.lifecycle.programs.path.include(path, str(self.deployment.base_path / "."))
+
+
+async def _stay() -> None:
+    """Leave no fleet."""

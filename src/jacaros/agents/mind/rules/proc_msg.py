@@ -50,6 +50,8 @@ from jacaros.runtime.errors import InternalError
 ERROR = functor("error", 1)
 _IMMEDIATE = frozenset({"tell", "achieve", "signal"})
 """Performatives whose only effect is an event, which takes its place in the queue."""
+UNDELIVERED = functor("undelivered", 2)
+"""Functor of the content of a message ``undelivered``: what was not delivered, and why."""
 RECEIVED = trigger("+", "!", functor("kqml_received", 4))
 
 
@@ -128,7 +130,7 @@ def take_answer(agent: Circumstance, waiting: AnswerWait, message: SpeechAct) ->
     agent.waits.questions.pop(str(message.in_reply_to), None)
     if message.performative == "undelivered":
         deadlines.forget(agent, waiting)
-        deadlines.fail(agent, waiting, *nobody_there(message.sender))
+        deadlines.fail(agent, waiting, *not_delivered(message.sender, message.content[2]))
         return
     content = atom("false") if message.performative == "untell" else _with_source(agent, message)
     waiting.answers.append(content)
@@ -166,6 +168,13 @@ def _told_by(content: Term, own_name: str, message: SpeechAct) -> Term:
 def nobody_there(receiver: str) -> tuple[str, Term]:
     """Describe why a message cannot be delivered: for the log, and as the error of the step."""
     return f"unknown receiver: '{receiver}'", (ERROR, atom("receiver_not_found"))
+
+
+def not_delivered(receiver: str, reason: Term) -> tuple[str, Term]:
+    """Describe why a message that was accepted did not arrive: for the log, and as the error of the step."""
+    if reason is nobody_there(receiver)[1][1]:
+        return nobody_there(receiver)
+    return f"the question did not reach {receiver}: {text(reason)}", (ERROR, reason)
 
 
 def from_sender(content: Term, sender: str) -> Term:
@@ -357,9 +366,10 @@ def _untell_how(agent: Circumstance, message: SpeechAct) -> None:
 
 
 def _undelivered(agent: Circumstance, message: SpeechAct) -> None:
-    """Handle a message that was accepted, but did not reach an agent of another process."""
+    """Handle a message that was accepted, but did not reach an agent of another system."""
+    _, content, reason = resolve(message.content)
     agent.architecture.log(
-        "warning", f"message did not reach {message.sender}: {text(resolve(message.content))}"
+        "warning", f"message did not reach {message.sender} ({text(reason)}): {text(content)}"
     )
 
 

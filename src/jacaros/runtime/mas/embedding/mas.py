@@ -21,7 +21,7 @@ from jacaros.runtime.mas.embedding.running_agent import RunningAgent
 from jacaros.runtime.mas.embedding.waits import RunEnded, RunWaits, UnknownAgent
 from jacaros.runtime.mas.launch import chosen_clock, load_deployment, mapped
 from jacaros.runtime.mas.options import RunOptions
-from jacaros.runtime.mas.system import System
+from jacaros.runtime.mas.system import Join, System
 
 if TYPE_CHECKING:
     from jacaros.agents.python.python_agent import PythonAgent
@@ -119,6 +119,7 @@ class Mas:
             current folder.
         on_print: called with agent and text whenever an agent prints. Default: print ``[agent] text`` to standard output.
         on_log: called with text and level of each line of the log. Default: standard error.
+        join: joins the system to a fleet, see `jacaros.fleet.joining`.
         changes: fields of `RunOptions` that override those of *options*, such as ``seed=1, world="patrol"``.
 
     Raises:
@@ -136,6 +137,7 @@ class Mas:
         folder: str | Path | None = None,
         on_print: OnPrint | None = None,
         on_log: OnLog | None = None,
+        join: Join | None = None,
         **changes: Any,
     ) -> None:
         self._options = replace(options or RunOptions(), **changes)
@@ -143,6 +145,7 @@ class Mas:
         self._deployment = _deployment(project, name, base, self._options.mappings)
         self._options.check()
         self._console = PrintedConsole(on_print, on_log)
+        self._join = join
         self._begun: tuple[System, RunWaits] | None = None
         self._stop_watching: Callable[[], None] = lambda: None
         self._at_end: list[Callable[[], None]] = []
@@ -161,7 +164,7 @@ class Mas:
         options = replace(self._options, fast=clock_of(loop).virtual)
         options.check()
         clock = chosen_clock(options, self._console, clock_of(loop))
-        system = System(self._deployment, clock, self._console, options)
+        system = System(self._deployment, clock, self._console, options, join=self._join)
         waits = RunWaits(clock)
         self._begun = system, waits
         system.lifecycle.when_ended = waits.agent_ended

@@ -1,0 +1,327 @@
+"""Everything that one member sends to another one: in order, once, whatever the network loses, doubles or reorders.
+
+Zenoh resends on each hop, but nothing tells a sender that a message has arrived, and what was under way when a link
+breaks is lost. So payloads are numbered here. The receiver acknowledges the last one in order, and the sender keeps each
+payload until then. All packets also carry clocks, from which delay and offset of the other clock are measured.
+
+The numbers outlive a cut: what is still kept then is sent again, and not delivered again.
+"""
+
+import asyncio
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import msgspec
+
+from jacaros.runtime.clock import Clock
+from jacaros.runtime.timers import Timer
+
+VERSION = 1
+"""Version of everything on the wire."""
+_MAGIC = b"JF"
+_WINDOW = 512 << 10
+"""Bytes that are on their way at most; a larger payload travels alone."""
+_DATAGRAM = 64 << 10
+"""Bytes of payloads in one packet, except for a larger payload."""
+_AHEAD = 4096
+"""Payloads that are kept while an earlier one is missing."""
+_ACK_DELAY = 0.01
+"""Seconds for which an acknowledgement waits for a packet to travel with."""
+_ACK_EVERY = 32
+"""Payloads after which it does not wait."""
+_SOONEST, _LATEST = 0.05, 1.0
+"""Bounds of the seconds after which a payload is sent again."""
+_SAMPLES = 16
+"""Measurements of the clocks from which that with the shortest delay is taken."""
+
+
+class Malformed(Exception):
+    """Bytes that are no packet, or of another version. The text says what they are."""
+
+
+class Packet(msgspec.Struct, array_like=True, forbid_unknown_fields=True):
+    """What travels at a time.
+
+    Attributes:
+        base: number of the oldest payload that the sender still keeps. Earlier ones will never come.
+        first: number of the first of the payloads.
+        ack: number up to which everything has arrived from the other side.
+        payloads: consecutive ones. An empty one was withdrawn.
+        sent: clock of the sender, in seconds since the epoch.
+        echo: ``sent`` of the newest packet from the other side; 0.0: none.
+        held: seconds between the arrival of that packet and this one.
+    """
+
+    base: int
+    first: int
+    ack: int
+    payloads: list[bytes]
+    sent: float
+    echo: float
+    held: float
+
+
+_read_packet = msgspec.msgpack.Decoder(Packet).decode
+_write_packet = msgspec.msgpack.Encoder().encode
+
+
+def read_packet(datagram: bytes) -> Packet:
+    """Return the packet in a datagram.
+
+    Raises:
+        Malformed: it has none, or one of another version.
+    """
+    if datagram[:2] != _MAGIC or len(datagram) < 3:
+        raise Malformed("bytes that are no message of JaCaROS")
+    if datagram[2] != VERSION:
+        raise Malformed(f"version {datagram[2]} of the fleet's messages, this one has version {VERSION}")
+    try:
+        return _read_packet(memoryview(datagram)[3:])
+    except msgspec.MsgspecError as error:
+        raise Malformed(f"a damaged message ({error})") from None
+
+
+@dataclass(slots=True)
+class _Kept:
+    """A payload that has not been acknowledged.
+
+    Attributes:
+        payload: empty if it was withdrawn.
+        on_lost: called if it is given up; None: it is withdrawn as soon as the other member is lost.
+    """
+
+    payload: bytes
+    on_lost: Callable[[], None] | None
+
+
+class Clocks:
+    """Delay, and offset of the other clock, measured from the times in packets, as NTP does.
+
+    Attributes:
+        delay: seconds there and back, smoothed; None before the first measurement.
+        offset: seconds that the other clock is ahead of ours.
+    """
+
+    def __init__(self) -> None:
+        self.delay: float | None = None
+        self.offset = 0.0
+        self._samples: deque[tuple[float, float]] = deque(maxlen=_SAMPLES)
+        self._heard = self._heard_at = 0.0
+
+    def heard(self, packet: Packet, now: float) -> None:
+        """Measure, from a packet that has just arrived."""
+        self._heard, self._heard_at = packet.sent, now
+        if not packet.echo:
+            return
+        delay = max(0.0, now - packet.echo - packet.held)
+        received = packet.sent - packet.held
+        self._samples.append((delay, (received - packet.echo + packet.sent - now) / 2))
+        self.offset = min(self._samples)[1]
+        self.delay = delay if self.delay is None else self.delay + (delay - self.delay) / 8
+
+    def echo(self, now: float) -> tuple[float, float]:
+        """Return what a packet that is sent now says of the newest one that was heard."""
+        return self._heard, now - self._heard_at if self._heard else 0.0
+
+
+class Channel:
+    """Both directions between this member and another one.
+
+    Args:
+        clock: clock for time limits and measurements.
+        transmit: sends a datagram, which may be lost.
+        receive: called with each payload of the other side.
+
+    Attributes:
+        clocks: delay, and offset of the other clock.
+        backlog: bytes that have not been acknowledged.
+        when_drained: called when everything has been acknowledged, or None.
+    """
+
+    def __init__(
+        self, clock: Clock, transmit: Callable[[bytes], None], receive: Callable[[bytes], None]
+    ) -> None:
+        self.clocks = Clocks()
+        self.backlog = 0
+        self.when_drained: Callable[[], None] | None = None
+        self._clock, self._transmit, self._receive = clock, transmit, receive
+        self._kept: deque[_Kept] = deque()
+        self._base = 1  # number of the first of those
+        self._sent = 0  # how many of those have been sent, from the first
+        self._flying = 0  # bytes of those
+        self._expected = 1
+        self._ahead: dict[int, bytes] = {}
+        self._unacknowledged = 0
+        self._flushing = False
+        self._tries = 0
+        self._ack_timer: Timer | None = None
+        self._resend_timer: Timer | None = None
+        self._open = True
+
+    # ---- to the other side
+
+    def send(self, payload: bytes, on_lost: Callable[[], None] | None = None) -> None:
+        """Send a payload. See `_Kept` for *on_lost*."""
+        self._kept.append(_Kept(payload, on_lost))
+        self.backlog += len(payload)
+        if not self._flushing and self._open:
+            self._flushing = True
+            asyncio.get_running_loop().call_soon(self._flush)
+
+    def _flush(self) -> None:
+        self._flushing = False
+        while self._open and self._sent < len(self._kept):
+            batch, size = self._next_batch()
+            if not batch:
+                return
+            first = self._base + self._sent
+            self._sent += len(batch)
+            self._flying += size
+            self._emit(first, batch)
+            if self._resend_timer is None:
+                self._resend_timer = self._clock.call_later(self._patience(), self._resend)
+
+    def _next_batch(self) -> tuple[list[bytes], int]:
+        """Return the payloads of the next packet, as far as the window has room, and their size."""
+        batch: list[bytes] = []
+        size = 0
+        for place in range(self._sent, len(self._kept)):
+            payload = self._kept[place].payload
+            full = size + len(payload) > _DATAGRAM or self._flying + size + len(payload) > _WINDOW
+            if full and (batch or self._flying):
+                break
+            batch.append(payload)
+            size += len(payload)
+        return batch, size
+
+    def _patience(self) -> float:
+        expected = 3 * (self.clocks.delay or 0.1) + 2 * _ACK_DELAY
+        return min(_LATEST, max(_SOONEST, expected) * 2.0 ** min(self._tries, 5))
+
+    def _resend(self) -> None:
+        """Send again what has not been acknowledged in time, beginning with one packet."""
+        self._resend_timer = None
+        if not self._open or not self._kept or not self._sent:
+            return
+        self._tries += 1
+        self._sent = self._flying = 0
+        batch, size = self._next_batch()
+        self._sent, self._flying = len(batch), size
+        self._emit(self._base, batch)
+        self._resend_timer = self._clock.call_later(self._patience(), self._resend)
+
+    def _emit(self, first: int, payloads: list[bytes]) -> None:
+        self._unacknowledged = 0
+        if self._ack_timer is not None:
+            self._ack_timer.cancel()
+            self._ack_timer = None
+        now = self._clock.now()
+        packet = Packet(self._base, first, self._expected - 1, payloads, now, *self.clocks.echo(now))
+        self._transmit(b"%b%c%b" % (_MAGIC, VERSION, _write_packet(packet)))
+
+    def ping(self) -> None:
+        """Send a packet without payloads, which also acknowledges."""
+        if self._open:
+            self._emit(self._base + self._sent, [])
+
+    # ---- from the other side
+
+    def heard(self, packet: Packet) -> None:
+        """Take in a packet."""
+        self.clocks.heard(packet, self._clock.now())
+        if not self._open:
+            return
+        self._acknowledged(packet.ack)
+        self._skip_to(packet.base)
+        before = self._expected
+        for number, payload in enumerate(packet.payloads, packet.first):
+            if self._expected <= number < self._expected + _AHEAD:
+                self._ahead[number] = payload
+        self._deliver()
+        if packet.payloads:
+            self._owe(self._expected - before)
+
+    def _skip_to(self, base: int) -> None:
+        """Forget numbers that the other side has given up, even those that came out of order."""
+        if base > self._expected:
+            self._expected = base
+            self._ahead = {number: payload for number, payload in self._ahead.items() if number >= base}
+            self._deliver()
+
+    def _deliver(self) -> None:
+        while (payload := self._ahead.pop(self._expected, None)) is not None:
+            self._expected += 1
+            if payload:
+                self._receive(payload)
+
+    def _owe(self, arrived: int) -> None:
+        """Acknowledge soon; immediately if a payload is missing or came again, or there were many."""
+        self._unacknowledged += arrived
+        if not arrived or self._ahead or self._unacknowledged >= _ACK_EVERY:
+            self.ping()
+        elif self._ack_timer is None:
+            self._ack_timer = self._clock.call_later(_ACK_DELAY, self._acknowledge)
+
+    def _acknowledge(self) -> None:
+        self._ack_timer = None
+        if self._unacknowledged:
+            self.ping()
+
+    def _acknowledged(self, number: int) -> None:
+        count = min(number - self._base + 1, len(self._kept))
+        if count <= 0:
+            return
+        for place in range(count):
+            size = len(self._kept.popleft().payload)
+            self.backlog -= size
+            if place < self._sent:
+                self._flying -= size
+        self._base += count
+        self._sent = max(0, self._sent - count)
+        self._tries = 0
+        if self._resend_timer is not None:
+            self._resend_timer.cancel()
+            self._resend_timer = None
+        if self._sent:
+            self._resend_timer = self._clock.call_later(self._patience(), self._resend)
+        self._flush()
+        if not self._kept and self.when_drained is not None:
+            self.when_drained()
+
+    # ---- losses
+
+    def lose(self) -> None:
+        """The other member does not answer: stop sending, and withdraw what need not be kept for its return."""
+        self._stop()
+        kept = [each for each in self._kept if each.on_lost is not None]
+        if not kept:
+            self._base += len(self._kept)
+            self._kept.clear()
+        for each in self._kept:
+            if each.on_lost is None:
+                each.payload = b""
+        self.backlog = sum(len(each.payload) for each in kept)
+        self._sent = self._flying = self._tries = 0
+
+    def find(self) -> None:
+        """The other member answers again: send everything that is kept."""
+        self._open = True
+        self._flush()
+
+    def give_up(self) -> None:
+        """Give up everything that is kept: the other member will not return."""
+        self._stop()
+        kept, self._kept = self._kept, deque()
+        self._base += len(kept)
+        self.backlog = self._sent = self._flying = 0
+        for each in kept:
+            if each.on_lost is not None:
+                each.on_lost()
+
+    def _stop(self) -> None:
+        self._open = False
+        for timer in (self._ack_timer, self._resend_timer):
+            if timer is not None:
+                timer.cancel()
+        self._ack_timer = self._resend_timer = None

@@ -1,0 +1,223 @@
+"""One system as a member of a fleet."""
+
+import os
+import time
+from collections import deque
+from collections.abc import Callable, Collection
+from secrets import token_hex
+
+from jacaros.fleet import protocol
+from jacaros.fleet.agents import FleetAgents
+from jacaros.fleet.announced import Announced
+from jacaros.fleet.artifacts import ArtifactNames
+from jacaros.fleet.carrier import Carrier, MemberId
+from jacaros.fleet.channel import Malformed, read_packet
+from jacaros.fleet.peer import Peer
+from jacaros.runtime.errors import UsageError
+from jacaros.runtime.mas.directory import NAME as DIRECTORY_NAME
+from jacaros.runtime.mas.system import System
+from jacaros.runtime.timers import Timer
+
+SILENCE = 2.5
+"""Seconds after which a member that says nothing is lost. Its loop may be blocked while its network answers."""
+PING = 0.5
+"""Seconds between signs of life."""
+MEMORY = 60.0
+"""Seconds for which messages and focuses wait for a lost member to return."""
+GOODBYE = 0.5
+"""Seconds for which the end of a member waits until the others have what it said last."""
+
+_DEPARTED = 100
+"""Runs that have ended whose last datagrams are ignored."""
+
+WhenChanged = Callable[[str, str], None]
+"""Called with the name and the new state of a member: ``joined``, ``lost`` or ``left``."""
+
+
+def new_id(name: str) -> MemberId:
+    """Return the id of a run that begins now."""
+    return MemberId(name, f"{time.time_ns():016x}{os.getpid() & 0xFFFF:04x}{token_hex(2)}")
+
+
+class Member:
+    """Joins a system to a fleet.
+
+    Args:
+        system: the system.
+        carrier: its network.
+        me: this run.
+        tell_how: names of members that may change the programs of agents here.
+
+    Attributes:
+        peers: other members by name, also lost ones.
+        watchers: called whenever a member comes or goes.
+    """
+
+    def __init__(
+        self, system: System, carrier: Carrier, me: MemberId, tell_how: Collection[str] = ()
+    ) -> None:
+        self.me = me
+        self.peers: dict[str, Peer] = {}
+        self.watchers: list[WhenChanged] = []
+        self._system, self._carrier, self._tell_how = system, carrier, tell_how
+        self._reported: set[str] = set()
+        self._timer: Timer | None = None
+        self._forgetting: dict[MemberId, Timer] = {}
+        self._departed: deque[MemberId] = deque(maxlen=_DEPARTED)
+        self._rival: MemberId | None = None
+        self._names = ArtifactNames(me.incarnation, self._path_of)
+        self._agents = FleetAgents(me.name, system.directory.find, self._warn)
+        self._announced = Announced(system, self._names, self._tell)
+        self._ends: list[Callable[[], object]] = []
+
+    def _warn(self, text: str) -> None:
+        if text not in self._reported:
+            self._reported.add(text)
+            self._system.console.log(f"[fleet] {text}", "warning")
+
+    def _path_of(self, run: str, workspace: str) -> str:
+        peer = next((each for each in self.peers.values() if each.id.incarnation == run), None)
+        return workspace if peer is None else peer.path_of(workspace)
+
+    # ---- its life
+
+    async def join(self) -> None:
+        """Join the fleet: others know what this member has, and it learns what they have.
+
+        Raises:
+            UsageError: the network cannot be used, or another member has the name.
+        """
+        directory = self._system.directory
+        self._ends.append(directory.join(self._agents, elsewhere=True))
+        self._ends.append(directory.watch(self._agent_news))
+        self._ends.append(self._announced.end)
+        await self._carrier.open(self.me, self)
+        if self._rival is not None:
+            await self.leave()
+            raise UsageError(
+                f"the fleet has a member called {self.me.name} already; choose another name with --member"
+            )
+        self._pulse()
+
+    async def leave(self) -> None:
+        """Leave the fleet, after the others have got what was said last."""
+        for end in self._ends:
+            end()
+        self._ends.clear()
+        there = [each for each in self.peers.values() if each.is_there]
+        for peer in there:
+            peer.say(protocol.Bye())
+        patience = self._system.clock.elapsed + GOODBYE
+        while any(each.backlog for each in there) and self._system.clock.elapsed < patience:
+            await self._system.clock.sleep(0.01)
+        for timer in (self._timer, *self._forgetting.values()):
+            if timer is not None:
+                timer.cancel()
+        for peer in list(self.peers.values()):
+            peer.lose("left")
+        await self._carrier.close()
+
+    def _agent_news(self, name: str, present: bool) -> None:
+        if present and name != DIRECTORY_NAME:
+            self._agents.check(name)
+
+    def _tell(self, said: object) -> None:
+        for peer in self.peers.values():
+            peer.say(said)  # type: ignore[arg-type]
+
+    def _pulse(self) -> None:
+        """Give signs of life, and notice who gives none."""
+        clock = self._system.clock
+        self._timer = clock.call_later(PING, self._pulse)
+        for peer in list(self.peers.values()):
+            peer.channel.ping()
+            if peer.is_there and clock.elapsed - peer.heard_at > SILENCE:
+                peer.lose()
+
+    # ---- what the carrier tells
+
+    def received(self, sender: MemberId, datagram: bytes) -> None:
+        """Receive a datagram."""
+        try:
+            packet = read_packet(datagram)
+        except Malformed as error:
+            self.refused(sender.name, str(error))
+            return
+        peer = self._peer(sender)
+        if peer is not None:
+            peer.find()
+            peer.heard(packet)
+
+    def refused(self, sender: str, why: str) -> None:
+        """Report something that is no datagram of a member, once for each sender."""
+        self._warn(f"ignored from {sender}: {why}")
+
+    def present(self, member: MemberId, is_present: bool) -> None:
+        """Hear that another member is there, or is not."""
+        if is_present:
+            peer = self._peer(member)
+            if peer is not None:
+                peer.heard_at = self._system.clock.elapsed
+                peer.find()
+        elif (known := self.peers.get(member.name)) is not None and known.id == member:
+            known.lose()
+
+    def _peer(self, member: MemberId) -> Peer | None:
+        """Return another member, which may be new. None: it is an earlier run of one, or has the name of this one."""
+        if member.name == self.me.name:
+            self._meet_rival(member)
+            return None
+        known = self.peers.get(member.name)
+        if known is not None and known.id == member:
+            return known
+        if member in self._departed or (known is not None and known.id.incarnation > member.incarnation):
+            return None
+        if known is not None:
+            known.lose("left")
+            self._forget(known)
+        peer = self.peers[member.name] = Peer(
+            member,
+            self._system,
+            self._announced,
+            self._agents,
+            self._names,
+            lambda datagram: self._carrier.send(member, datagram),
+            member.name in self._tell_how or "*" in self._tell_how,
+            self._changed,
+        )
+        return peer
+
+    def _meet_rival(self, member: MemberId) -> None:
+        """Another run has the name of this one: the older one keeps it."""
+        if member.incarnation == self.me.incarnation:
+            return
+        if member.incarnation < self.me.incarnation:
+            self._rival = member
+        self._warn(f"another member is called {self.me.name}, too; the one that began first keeps the name")
+
+    def _changed(self, peer: Peer, state: str) -> None:
+        self._system.console.log(
+            f"[fleet] {peer.name} {_STATES[state]}", "warning" if state == "lost" else "info"
+        )
+        waiting = self._forgetting.pop(peer.id, None)
+        if waiting is not None:
+            waiting.cancel()
+        if state == "lost":
+            self._forgetting[peer.id] = self._system.clock.call_later(MEMORY, lambda: self._forget(peer))
+        elif state == "left":
+            self._forget(peer)
+        for watcher in tuple(self.watchers):
+            watcher(peer.name, state)
+
+    def _forget(self, peer: Peer) -> None:
+        if self.peers.get(peer.name) is not peer:
+            return
+        del self.peers[peer.name]
+        waiting = self._forgetting.pop(peer.id, None)
+        if waiting is not None:
+            waiting.cancel()
+        self._departed.append(peer.id)
+        peer.forget()
+
+
+_STATES = {"joined": "has joined", "lost": "does not answer", "left": "has left"}

@@ -1,0 +1,122 @@
+"""The carrier on Eclipse Zenoh: a datagram is a publication, presence a liveliness token.
+
+Zenoh finds the other members, secures and routes what they send, and notices when one ends. Its callbacks run in threads
+of its own; here they are passed on to the event loop.
+"""
+
+import asyncio
+from collections import deque
+from typing import Any
+
+import zenoh
+
+from jacaros.fleet.carrier import Listener, MemberId
+from jacaros.fleet.network import Network, session_config
+from jacaros.runtime.errors import UsageError
+
+_ROOT = "jacaros"
+_MOST = 100_000
+"""Arrivals that wait for the event loop at most; more are dropped, as by a network, and sent again."""
+
+
+class ZenohCarrier:
+    """A carrier on Zenoh.
+
+    Args:
+        network: which fleet, and how it is reached.
+    """
+
+    def __init__(self, network: Network) -> None:
+        self._network = network
+        self._root = f"{_ROOT}/{network.fleet}"
+        self._session: Any = None
+        self._publishers: dict[MemberId, Any] = {}
+        self._arrived: deque[tuple[str, Any]] = deque()
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._listener: Listener | None = None
+        self._me = MemberId("", "")
+        self._declared: list[Any] = []
+
+    async def open(self, me: MemberId, listener: Listener) -> None:
+        """Open the session. See `jacaros.fleet.carrier.Carrier.open`."""
+        self._me, self._listener = me, listener
+        self._loop = asyncio.get_running_loop()
+        for kind, sample in await asyncio.to_thread(self._open):
+            self._arrive(kind, sample)
+
+    def _open(self) -> list[tuple[str, Any]]:
+        try:
+            session = self._session = zenoh.open(session_config(self._network))
+        except zenoh.ZError as error:
+            raise UsageError(f"cannot join the fleet {self._network.fleet}: {error}") from None
+        me = self._me
+        self._declared = [
+            session.declare_subscriber(
+                f"{self._root}/to/{me.name}/{me.incarnation}/from/**", self._on_datagram
+            ),
+            session.liveliness().declare_subscriber(f"{self._root}/member/**", self._on_token, history=False),
+        ]
+        known = [
+            ("token", reply.ok) for reply in session.liveliness().get(f"{self._root}/member/**") if reply.ok
+        ]
+        self._declared.append(
+            session.liveliness().declare_token(f"{self._root}/member/{me.name}/{me.incarnation}")
+        )
+        return known
+
+    # ---- in threads of Zenoh
+
+    def _on_datagram(self, sample: Any) -> None:
+        self._pass_on("datagram", sample)
+
+    def _on_token(self, sample: Any) -> None:
+        self._pass_on("token", sample)
+
+    def _pass_on(self, kind: str, sample: Any) -> None:
+        if len(self._arrived) < _MOST or kind == "token":
+            first = not self._arrived
+            self._arrived.append((kind, sample))
+            if first and self._loop is not None and not self._loop.is_closed():
+                self._loop.call_soon_threadsafe(self._take)
+
+    # ---- on the event loop
+
+    def _take(self) -> None:
+        """Take what has arrived."""
+        for _ in range(len(self._arrived)):
+            self._arrive(*self._arrived.popleft())
+        if self._arrived and self._loop is not None:
+            self._loop.call_soon(self._take)
+
+    def _arrive(self, kind: str, sample: Any) -> None:
+        if self._session is None or self._listener is None:
+            return
+        parts = str(sample.key_expr).split("/")
+        if kind == "token" and len(parts) == 5:
+            member = MemberId(parts[3], parts[4])
+            if member != self._me:
+                self._listener.present(member, sample.kind == zenoh.SampleKind.PUT)
+        elif kind == "datagram" and len(parts) == 8:
+            self._listener.received(MemberId(parts[6], parts[7]), sample.payload.to_bytes())
+        elif kind == "datagram":
+            self._listener.refused(str(sample.key_expr), "a key of no member")
+
+    def send(self, to: MemberId, datagram: bytes) -> None:
+        """Send a datagram. Zenoh drops it if the link is congested."""
+        if self._session is None:
+            return
+        publisher = self._publishers.get(to)
+        if publisher is None:
+            me = self._me
+            publisher = self._publishers[to] = self._session.declare_publisher(
+                f"{self._root}/to/{to.name}/{to.incarnation}/from/{me.name}/{me.incarnation}",
+                congestion_control=zenoh.CongestionControl.DROP,
+                express=True,
+            )
+        publisher.put(datagram)
+
+    async def close(self) -> None:
+        """Close the session."""
+        session, self._session = self._session, None
+        if session is not None:
+            await asyncio.to_thread(session.close)

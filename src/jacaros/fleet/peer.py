@@ -1,0 +1,320 @@
+"""Another member, as this one knows it: what it has, and what is under way between both."""
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import msgspec
+
+from jacaros.agents.mind.state.act import SpeechAct
+from jacaros.agents.mind.state.plan import Failure
+from jacaros.agents.terms.values import String, atom, functor
+from jacaros.artifacts.env.environment import Environment
+from jacaros.artifacts.env.errors import OperationFailed
+from jacaros.fleet import protocol
+from jacaros.fleet.agents import FleetAgents
+from jacaros.fleet.announced import Announced
+from jacaros.fleet.artifacts import ArtifactNames
+from jacaros.fleet.carrier import MemberId
+from jacaros.fleet.channel import Channel, Packet
+from jacaros.fleet.remote import Calls, RemoteWorkspace, RemoteWorkspaces
+from jacaros.fleet.served import Served
+from jacaros.fleet.wire import NotSendable, Wire
+from jacaros.runtime.mas.system import System
+
+FULL = 8 << 20
+"""Bytes under way to a member beyond which no message is accepted for it."""
+_QUESTIONS = 10_000
+"""Questions to a member whose answers are awaited; older ones get no report of its loss."""
+_ERROR, _ERROR_MSG = functor("error", 1), functor("error_msg", 1)
+_HOW = frozenset({"tellHow", "tell-how", "untellHow", "untell-how"})
+"""Performatives that change the program of their receiver."""
+_ASKING = ("ask",)
+
+
+class Peer:
+    """One run of another member.
+
+    Args:
+        id: that run.
+        system: the system of this member.
+        announced: what others are told of this member.
+        agents: agents of all other members.
+        names: names of artifacts.
+        transmit: sends a datagram to it.
+        may_tell_how: whether it may change programs here.
+        changed: called with its new state: ``joined``, ``lost`` or ``left``.
+
+    Attributes:
+        is_there: whether it answers.
+        heard_at: when it was last heard, on the clock of the run.
+        picture: what it said of itself last; None before.
+    """
+
+    def __init__(
+        self,
+        id: MemberId,
+        system: System,
+        announced: Announced,
+        agents: FleetAgents,
+        names: ArtifactNames,
+        transmit: Callable[[bytes], None],
+        may_tell_how: bool,
+        changed: Callable[["Peer", str], None],
+    ) -> None:
+        self.id, self.name = id, id.name
+        self.is_there = False
+        self.heard_at = system.clock.elapsed
+        self.picture: protocol.Here | None = None
+        self.channel = Channel(system.clock, transmit, self._received)
+        self._system, self._announced, self._agents, self._names = system, announced, agents, names
+        self._may_tell_how, self._changed = may_tell_how, changed
+        self._epoch = 1
+        self._its_epoch = 0
+        self._state = ""
+        self._reported: set[str] = set()
+        self._asked: dict[str, SpeechAct] = {}
+        self._services: dict[tuple[str, str], str] = {}
+        self._answers: dict[int, Callable[[Any], None]] = {}
+        wire = self._wire = Wire(names.name, names.find)
+        self._calls = Calls(self, self.name)
+        self._served = Served(self._environment, names, wire, self)
+        self.channel.when_drained = self._served.drained
+        self._remote = RemoteWorkspaces(id.incarnation, names, wire, self, self._calls)
+        self._workspaces: dict[str, tuple[RemoteWorkspace, Callable[[], None]]] = {}
+        self._handlers: dict[type, Callable[[Any], None]] = {
+            protocol.Here: self._on_here,
+            protocol.Bye: lambda _: self.leave(),
+            protocol.AgentNews: lambda said: self._agents.know(said.name, self.name, said.present),
+            protocol.ServiceNews: self._on_service,
+            protocol.Message: self._on_message,
+            protocol.Returned: self._on_returned,
+            protocol.WorkspaceNews: self._on_workspace,
+            protocol.ArtifactNews: self._on_artifact,
+            protocol.Execute: self._served.on_execute,
+            protocol.Create: self._served.on_create,
+            protocol.CreateWorkspace: self._served.on_create_workspace,
+            protocol.Dispose: self._served.on_dispose,
+            protocol.Focus: self._served.on_focus,
+            protocol.StopFocus: self._served.on_stop_focus,
+            protocol.Link: self._served.on_link,
+            protocol.Handle: self._served.on_handle,
+            protocol.Ended: self._calls.ended,
+            protocol.Observed: self._remote.observed,
+        }
+
+    def _environment(self) -> Environment:
+        return self._system.run_environment().environment
+
+    # ---- the line
+
+    @property
+    def backlog(self) -> int:
+        """Bytes that have not arrived there."""
+        return self.channel.backlog
+
+    def say(self, said: protocol.Said) -> None:
+        """Say something. Without effect while it does not answer: it gets the whole picture when it returns."""
+        if self.is_there:
+            self.channel.send(protocol.write(said))
+
+    def report(self, text: str) -> None:
+        """Write a warning about it into the log, once."""
+        if text not in self._reported:
+            self._reported.add(text)
+            self._system.console.log(f"[fleet] {self.name}: {text}", "warning")
+
+    def heard(self, packet: Packet) -> None:
+        """Take in a packet."""
+        self.heard_at = self._system.clock.elapsed
+        self.channel.heard(packet)
+
+    def _received(self, payload: bytes) -> None:
+        try:
+            said = protocol.read(payload)
+            handler = self._handlers.get(type(said))
+            if handler is not None:
+                handler(said)
+        except (msgspec.MsgspecError, ValueError, TypeError, LookupError, RecursionError) as error:
+            self.report(f"dropped something that is no valid message: {error}")
+        except OperationFailed as failure:
+            self.report(failure.message)
+
+    # ---- its life
+
+    def find(self) -> None:
+        """It answers."""
+        if self.is_there:
+            return
+        self.is_there = True
+        self.channel.find()
+        self.say(self._announced.picture(self._epoch, self._its_epoch))
+
+    def lose(self, state: str = "lost") -> None:
+        """It does not answer."""
+        if not self.is_there:
+            return
+        self.is_there = False
+        self.channel.lose()
+        self._epoch += 1
+        self._break()
+        self._become(state)
+
+    def leave(self) -> None:
+        """It said that it ends."""
+        self.channel.ping()  # it waits for that
+        self.lose("left")
+
+    def _break(self) -> None:
+        """End everything that is under way between both."""
+        self._served.lost()
+        self._remote.lose()
+        self._calls.lost()
+        self._agents.went(self.name)
+        for agent, service in list(self._services):
+            self._on_service(protocol.ServiceNews(agent, service, False))
+        asked, self._asked = self._asked, {}
+        for message in asked.values():
+            self._system.mailboxes.returned(message, "member_lost")
+
+    def forget(self) -> None:
+        """It will not return."""
+        self.channel.give_up()
+        for path in list(self._workspaces):
+            self._on_workspace(protocol.WorkspaceNews(path, False))
+        self._names.forget_run(self.id.incarnation)
+
+    # ---- what it has
+
+    def _on_here(self, said: protocol.Here) -> None:
+        if not self.is_there:
+            return
+        known, self._its_epoch = self._its_epoch, said.epoch
+        if known not in (0, said.epoch) and said.knows == self._epoch:
+            self._break()  # it lost this member, which has not noticed, and with it what was begun here
+            self.say(self._announced.picture(self._epoch, self._its_epoch))
+        self._agents.came(self.name, self)
+        for name in said.agents:
+            self._agents.know(name, self.name, True)
+        for agent, service in said.services:
+            self._on_service(protocol.ServiceNews(agent, service, True))
+        present = {path for path, _ in said.workspaces}
+        for path in [each for each in self._workspaces if each not in present]:
+            self._on_workspace(protocol.WorkspaceNews(path, False))
+        self._remote.present = True
+        for path, artifacts in said.workspaces:
+            self._on_workspace(protocol.WorkspaceNews(path, True))
+            if path in self._workspaces:
+                self._workspaces[path][0].told_all(artifacts)
+        self._remote.find()
+        self.picture = said
+        self._become("joined")
+
+    def _become(self, state: str) -> None:
+        if state != self._state:
+            self._state = state
+            self._changed(self, state)
+
+    def _on_service(self, said: protocol.ServiceNews) -> None:
+        key = (said.agent, said.service)
+        services = self._system.services
+        if said.provides and key not in self._services:
+            self._services[key] = self._agents.called(said.agent, self.name)
+            services.register(self._services[key], said.service)
+        elif not said.provides and key in self._services:
+            services.deregister(self._services.pop(key), said.service)
+
+    def path_of(self, path: str) -> str:
+        """Return the path at which a workspace of it is visible here."""
+        known = self._workspaces.get(path)
+        return known[0].path if known is not None else f"{path}@{self.name}"
+
+    def _on_workspace(self, said: protocol.WorkspaceNews) -> None:
+        known = self._workspaces.get(said.path)
+        if known is None and said.present and self._system.has_environment:
+            self._mount(said.path)
+        elif known is not None and not said.present:
+            del self._workspaces[said.path]
+            remote, unmount = known
+            remote.remove_all()
+            unmount()
+
+    def _mount(self, path: str) -> None:
+        environment = self._environment()
+        seen_as = path
+        if any(each.path == path for each in environment.workspaces()):
+            seen_as = f"{path}@{self.name}"
+            if path != "/main":
+                self.report(f"its workspace {path} is {seen_as} here, where {path} exists already")
+        remote = RemoteWorkspace(seen_as, path, self.name, self._remote)
+        # Before it is mounted, so that its artifacts get its path.
+        self._workspaces[path] = remote, lambda: None
+        try:
+            self._workspaces[path] = remote, environment.mount(remote)
+        except OperationFailed:
+            del self._workspaces[path]
+            raise
+
+    def _on_artifact(self, said: protocol.ArtifactNews) -> None:
+        if said.workspace in self._workspaces:
+            self._workspaces[said.workspace][0].told(said.number, said.data)
+
+    # ---- messages
+
+    def post(self, message: SpeechAct, receiver: str) -> None:
+        """Send a message to an agent of it.
+
+        Raises:
+            Failure: too much is under way, or the content cannot be sent.
+        """
+        if self.backlog > FULL:
+            raise Failure((_ERROR, atom("mailbox_full")), (_ERROR_MSG, String(f"{self.name} is too slow")))
+        try:
+            content = self._wire.from_term(message.content)
+        except NotSendable as error:
+            raise Failure((_ERROR, atom("not_sendable")), (_ERROR_MSG, String(str(error)))) from None
+        said = protocol.Message(
+            message.performative, message.sender, receiver, content, message.id, message.in_reply_to, ""
+        )
+        if message.performative.startswith(_ASKING):
+            self._note_question(message)
+            self.channel.send(protocol.write(said))
+        else:
+            lost = partial(self._system.mailboxes.returned, message, "unconfirmed")
+            self.channel.send(protocol.write(said), lost)
+
+    def _note_question(self, message: SpeechAct) -> None:
+        self._asked[message.id] = message
+        if len(self._asked) > _QUESTIONS:
+            del self._asked[next(iter(self._asked))]
+
+    def _on_message(self, said: protocol.Message) -> None:
+        reason = self._deliver(said)
+        if reason:
+            self.say(
+                protocol.Returned(
+                    said.id, said.sender, said.receiver, said.performative, said.content, reason
+                )
+            )
+
+    def _deliver(self, said: protocol.Message) -> str:
+        """Put a message into the mailbox of its receiver. Return why that is impossible, or an empty text."""
+        if said.performative in _HOW and not self._may_tell_how:
+            self.report(f"{said.sender} may not change programs here ({said.performative})")
+            return "not_permitted"
+        if said.in_reply_to is not None:
+            self._asked.pop(said.in_reply_to, None)
+        sender, content = self._agents.called(said.sender, self.name), self._wire.to_term(said.content)
+        message = SpeechAct(said.performative, sender, said.receiver, content, said.id, said.in_reply_to)
+        if self._system.directory.find_here(said.receiver) is None:
+            return "receiver_not_found"  # even if another member has it: messages are not passed on
+        try:
+            return "" if self._system.deliver(message) else "receiver_not_found"
+        except Failure:
+            return "mailbox_full"
+
+    def _on_returned(self, said: protocol.Returned) -> None:
+        self._asked.pop(said.id, None)
+        receiver, content = self._agents.called(said.receiver, self.name), self._wire.to_term(said.content)
+        message = SpeechAct(said.performative, said.sender, receiver, content, said.id)
+        self._system.mailboxes.returned(message, said.reason)
