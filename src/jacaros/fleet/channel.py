@@ -155,6 +155,8 @@ class Channel:
         self._unacknowledged = 0
         self._flushing = False
         self._tries = 0
+        self._sent_at = 0.0  # when something was last sent, or acknowledged
+        self._owed_at = 0.0
         self._ack_timer: Timer | None = None
         self._resend_timer: Timer | None = None
         self._open = True
@@ -165,12 +167,17 @@ class Channel:
         """Send a payload. See `_Kept` for *on_lost*."""
         self._kept.append(_Kept(payload, on_lost))
         self.backlog += len(payload)
-        if not self._flushing and self._open:
+        if self._open and not self._flushing:
+            # The first one goes at once; those that follow in this turn of the loop go together.
             self._flushing = True
-            asyncio.get_running_loop().call_soon(self._flush)
+            asyncio.get_running_loop().call_soon(self._flush_rest)
+            self._flush()
+
+    def _flush_rest(self) -> None:
+        self._flushing = False
+        self._flush()
 
     def _flush(self) -> None:
-        self._flushing = False
         while self._open and self._sent < len(self._kept):
             batch, size = self._next_batch()
             if not batch:
@@ -179,8 +186,9 @@ class Channel:
             self._sent += len(batch)
             self._flying += size
             self._emit(first, batch)
+            self._sent_at = self._clock.elapsed
             if self._resend_timer is None:
-                self._resend_timer = self._clock.call_later(self._patience(), self._resend)
+                self._resend_timer = self._clock.call_later(self._patience(), self._look)
 
     def _next_batch(self) -> tuple[list[bytes], int]:
         """Return the payloads of the next packet, as far as the window has room, and their size."""
@@ -199,23 +207,28 @@ class Channel:
         expected = 3 * (self.clocks.delay or 0.1) + 2 * _ACK_DELAY
         return min(_LATEST, max(_SOONEST, expected) * 2.0 ** min(self._tries, 5))
 
-    def _resend(self) -> None:
-        """Send again what has not been acknowledged in time, beginning with one packet."""
+    def _look(self) -> None:
+        """Send again what has not been acknowledged in time."""
         self._resend_timer = None
-        if not self._open or not self._kept or not self._sent:
+        if not self._open or not self._sent:
             return
+        left = self._sent_at + self._patience() - self._clock.elapsed
+        if left <= 0:
+            self._resend()
+            left = self._patience()
+        self._resend_timer = self._clock.call_later(left, self._look)
+
+    def _resend(self) -> None:
+        """Send the first packet again; what follows is sent as soon as that has been acknowledged."""
         self._tries += 1
+        self._sent_at = self._clock.elapsed
         self._sent = self._flying = 0
         batch, size = self._next_batch()
         self._sent, self._flying = len(batch), size
         self._emit(self._base, batch)
-        self._resend_timer = self._clock.call_later(self._patience(), self._resend)
 
     def _emit(self, first: int, payloads: list[bytes]) -> None:
         self._unacknowledged = 0
-        if self._ack_timer is not None:
-            self._ack_timer.cancel()
-            self._ack_timer = None
         now = self._clock.now()
         packet = Packet(self._base, first, self._expected - 1, payloads, now, *self.clocks.echo(now))
         self._transmit(b"%b%c%b" % (_MAGIC, VERSION, _write_packet(packet)))
@@ -260,12 +273,21 @@ class Channel:
         self._unacknowledged += arrived
         if not arrived or self._ahead or self._unacknowledged >= _ACK_EVERY:
             self.ping()
-        elif self._ack_timer is None:
+            return
+        if self._unacknowledged == arrived:
+            self._owed_at = self._clock.elapsed
+        if self._ack_timer is None:
             self._ack_timer = self._clock.call_later(_ACK_DELAY, self._acknowledge)
 
     def _acknowledge(self) -> None:
+        """Acknowledge what has waited long enough."""
         self._ack_timer = None
-        if self._unacknowledged:
+        if not self._unacknowledged:
+            return
+        left = self._owed_at + _ACK_DELAY - self._clock.elapsed
+        if left > 1e-4:
+            self._ack_timer = self._clock.call_later(left, self._acknowledge)
+        else:
             self.ping()
 
     def _acknowledged(self, number: int) -> None:
@@ -280,11 +302,7 @@ class Channel:
         self._base += count
         self._sent = max(0, self._sent - count)
         self._tries = 0
-        if self._resend_timer is not None:
-            self._resend_timer.cancel()
-            self._resend_timer = None
-        if self._sent:
-            self._resend_timer = self._clock.call_later(self._patience(), self._resend)
+        self._sent_at = self._clock.elapsed
         self._flush()
         if not self._kept and self.when_drained is not None:
             self.when_drained()
