@@ -114,6 +114,6 @@ class FleetAgents:
         if len(holders) < 2 or all((name, each) in self._reported for each in holders):
             return
         self._reported.update((name, each) for each in holders)
-        full = " and ".join(f"{name}@{each}" for each in holders)
+        full = " and ".join(f"{name}@{each}" for each in sorted(holders))
         meant = f"; here, `{name}` is {name}@{self._member}" if self._member in holders else ""
         self._report(f"the name of agent {name} is not unique in the fleet: write {full}{meant}")

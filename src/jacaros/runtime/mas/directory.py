@@ -123,7 +123,7 @@ class Directory:
     def free_name(self, wanted: str) -> str:
         """Return *wanted*, or ``wanted_1``, ``wanted_2`` … if it is in use."""
         name, number = wanted, 0
-        while self._is_taken(name):
+        while self._is_taken(name) or self._found(name, self._elsewhere) is not None:
             number += 1
             name = f"{wanted}_{number}"
         return name

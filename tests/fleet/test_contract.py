@@ -1,14 +1,20 @@
-"""Two systems that talk and share artifacts over a queue, as two processes would: the ports are enough for that."""
+"""Two systems of a fleet, over a simulated network and over Zenoh: a carrier is good enough if these tests pass."""
 
+import asyncio
 from collections.abc import Awaitable, Callable, Sequence
+from itertools import count
 
 import pytest
-from loopback import RemoteWorkspace, join, share
+from queues import SimulatedNetwork
 
 import jacaros
 from jacaros import GoalFailed, Mas
 from jacaros.artifacts import Artifact, Atom, OperationFailed, Out, Structure, link, operation
-from played import played
+from jacaros.fleet.carrier import Carrier
+from jacaros.fleet.joining import joining
+from jacaros.fleet.network import Network
+from jacaros.fleet.on_zenoh import ZenohCarrier
+from jacaros.runtime.clock import clock_of
 
 
 class Counter(Artifact):
@@ -48,48 +54,101 @@ class Counter(Artifact):
         self.update_property("count", number)
 
 
+Carriers = Callable[[str], Carrier]
+"""Returns the access of a member to the network."""
+_FLEETS = count(1)
+
+
+def simulated() -> Carriers:
+    """The network of the tests."""
+    network = SimulatedNetwork(clock_of(asyncio.get_running_loop()))
+    return lambda name: network.carrier()
+
+
+def over_zenoh() -> Carriers:
+    """Zenoh, on this computer alone."""
+    fleet = f"contract{next(_FLEETS)}"
+    return lambda name: ZenohCarrier(Network(fleet, name))
+
+
 class Joined:
-    """Two systems that are joined."""
+    """Two members of a fleet."""
 
     def __init__(self, here: Mas, there: Mas) -> None:
         self.here, self.there = here, there
-        self.first, self.second = join(here.system, there.system)
+        self.warnings: list[str] = []
 
-    async def settled(self) -> None:
-        """Let lines arrive."""
-        for mas in (self.here, self.there):
-            await mas.sleep(0.01)
-            await mas.until_idle(timeout=10)
+    async def settled(self, holds: Callable[[], bool] = lambda: True) -> None:
+        """Let everything arrive, until something holds."""
+        for _ in range(200):
+            await self.here.sleep(0.05)
+            for mas in (self.here, self.there):
+                await mas.until_idle(timeout=10)
+            if holds():
+                return
+        raise AssertionError("it does not become true")
 
-    async def shared(self) -> RemoteWorkspace:
-        """A workspace of *here* with a counter, seen from *there* as /main/far."""
+    async def shared(self) -> None:
+        """Create a workspace with a counter *here*, and wait until *there* knows it."""
         self.here.add_artifact_types(Counter)
         lab = self.here.create_workspace("lab")
         await self.here.make_artifact("counter", Counter, [1], workspace=lab)
-        remote = share(self.first, self.second, lab, "/main/far")
-        await self.settled()
-        return remote
+        await self.settled(lambda: "/main/lab" in [each.path for each in self.there.environment.workspaces()])
 
 
-def joined(test: Callable[[Joined], Awaitable[None]], prints: Sequence[str] | None = None) -> None:
-    """Run a test with two systems that are joined; their agents print some lines."""
+def joined(
+    test: Callable[[Joined], Awaitable[None]], carriers: Callable[[], Carriers], prints: Sequence[str] | None
+) -> None:
+    """Run a test with two members of a fleet; their agents print some lines."""
     lines: list[str] = []
+    warnings: list[str] = []
 
     def printed(agent: str, text: str) -> None:
-        lines.append(f"[{agent}] {text}")
+        if not agent.startswith("[fleet]"):
+            lines.append(f"[{agent}] {text}")
+        elif text == "warning":
+            warnings.append(agent.removeprefix("[fleet] "))
 
     async def main() -> None:
+        carrier = carriers()
         async with (
-            Mas(name="here", seed=1, on_print=printed, on_log=printed) as here,
-            Mas(name="there", seed=2, on_print=printed, on_log=printed) as there,
+            Mas(
+                name="here", seed=1, on_print=printed, on_log=printed, join=joining(carrier("here"), "here")
+            ) as here,
+            Mas(
+                name="there",
+                seed=2,
+                on_print=printed,
+                on_log=printed,
+                join=joining(carrier("there"), "there"),
+            ) as there,
         ):
-            await test(Joined(here, there))
+            two = Joined(here, there)
+            two.warnings = warnings
+            await two.settled()
+            await test(two)
 
-    jacaros.run(main(), clock="fast")
+    jacaros.run(main(), clock="fast" if carriers is simulated else "real")
     assert prints is None or lines == prints
 
 
-@played(joined, prints=["[ann] [ann,bob]", "[ann] weather(fine)[source(bob)]", "[bob] ann"])
+def on_both(
+    prints: Sequence[str] | None = None,
+) -> Callable[[Callable[[Joined], Awaitable[None]]], Callable[..., None]]:
+    """Make a test of a coroutine function, for each carrier."""
+
+    def as_test(scene: Callable[[Joined], Awaitable[None]]) -> Callable[..., None]:
+        @pytest.mark.parametrize("carriers", [simulated, over_zenoh])
+        def test(carriers: Callable[[], Carriers]) -> None:
+            joined(scene, carriers, prints)
+
+        test.__name__, test.__doc__ = scene.__name__, scene.__doc__
+        return test
+
+    return as_test
+
+
+@on_both(["[ann] [ann,bob]", "[ann] weather(fine)[source(bob)]", "[bob] ann"])
 async def test_agents_of_two_systems_talk(two) -> None:
     ann = two.here.add_agent(
         "ann",
@@ -106,43 +165,49 @@ async def test_agents_of_two_systems_talk(two) -> None:
     await two.settled()
 
 
-@played(
-    joined,
-    prints=[
+@on_both(
+    [
         "[ann] receiver_not_found",
-        "[[ann] warning: message did not reach bob: hello] warning",
-        "[ann] receiver_not_found",
+        "[[ann] warning: message did not reach bob@there (receiver_not_found): hello] warning",
     ],
 )
 async def test_a_message_that_does_not_arrive_comes_back(two) -> None:
     program = """
-        +!ask <- .send(bob, askOne, p(X), A); .print(A).
+        +!ask <- .send("bob@there", askOne, p(X), A); .print(A).
         -!ask[error(E)] <- .print(E).
-        +!say <- .send(bob, tell, hello).
+        +!say <- .send("bob@there", tell, hello).
     """
     ann = two.here.add_agent("ann", program)
-    two.first.agents.know("bob", True)  # outdated information
     await ann.achieve("ask").wait(timeout=9)
     await ann.achieve("say")
     await two.settled()
-    two.first.agents.know("bob", False)
-    await ann.achieve("ask").wait(timeout=9)
 
 
-@played(joined)
+@on_both()
 async def test_agents_that_come_and_go_are_known(two) -> None:
     bob = two.there.add_agent("bob", "")
-    await two.settled()
-    with pytest.raises(jacaros.JacarosError, match="duplicate agent name `bob`"):
-        two.here.add_agent("bob", "")
-    assert two.here.system.directory.free_name("bob") == "bob_1"
+    directory = two.here.system.directory
+    await two.settled(lambda: directory.names() == ("bob",))
+    assert directory.free_name("bob") == "bob_1"
     bob.kill()
+    await two.settled(lambda: directory.names() == ())
+
+
+@on_both(["[bob] both", "[bob] both"])
+async def test_a_name_of_two_systems_is_reported_and_written_in_full(two) -> None:
+    program = "+both <- .print(both)."
+    two.here.add_agent("bob", program)
+    two.there.add_agent("bob", program)
+    ann = two.there.add_agent("ann", '+!go <- .send("bob@here", tell, both); .send(bob, tell, both).')
+    await two.settled(lambda: len(two.here.system.directory.names()) == 3)
+    assert sorted(two.here.system.directory.names()) == ["ann", "bob", "bob@there"]
+    await ann.achieve("go").wait(timeout=9)
     await two.settled()
-    assert two.first.agents.names() == ()
-    two.here.add_agent("bob", "")
+    clash = "the name of agent bob is not unique in the fleet: write bob@here and bob@there; here, `bob` is"
+    assert sorted(two.warnings) == [f"{clash} bob@here", f"{clash} bob@there"]
 
 
-@played(joined, prints=["[bob] [ann]"])
+@on_both(["[bob] [ann]"])
 async def test_services_of_both_are_found(two) -> None:
     ann = two.here.add_agent("ann", "!go. +!go <- .df_subscribe(taxi); .df_register(cleaning).")
     await two.settled()
@@ -155,11 +220,10 @@ async def test_services_of_both_are_found(two) -> None:
     assert list(two.there.system.services.providers("taxi")) == ["bob"]
 
 
-@played(
-    joined,
-    prints=[
-        *("[bob] focused 1", "[bob] by(1)counter/main/far", "[bob] after inc 2", '[bob] 3["a",p(1,[2])]'),
-        *("[bob] by(10)counter/main/far", "[bob] too many: too_many(12)"),
+@on_both(
+    [
+        *("[bob] focused 1", "[bob] by(1)counter/main/lab", "[bob] after inc 2", '[bob] 3["a",p(1,[2])]'),
+        *("[bob] by(10)counter/main/lab", "[bob] too many: too_many(12)"),
     ],
 )
 async def test_an_agent_uses_an_artifact_of_the_other_system(two) -> None:
@@ -167,7 +231,7 @@ async def test_an_agent_uses_an_artifact_of_the_other_system(two) -> None:
     bob = two.there.add_agent(
         "bob",
         """
-        +!go <- joinWorkspace("/main/far", W); lookupArtifact("counter", Id); focus(Id);
+        +!go <- joinWorkspace("/main/lab", W); lookupArtifact("counter", Id); focus(Id);
                 ?count(N); .print("focused ", N);
                 inc; ?count(M); .print("after inc ", M);
                 check(5, Left, Names); .print(Left, Names);
@@ -180,28 +244,28 @@ async def test_an_agent_uses_an_artifact_of_the_other_system(two) -> None:
     assert await bob.until("count(X)") == {"X": 12}
     assert two.here.system.environment is not None
     there_seen = bob.ask("focusing(_, N, T, _, W, P)")
-    assert there_seen == {"N": "counter", "T": "Counter", "W": "far", "P": "/main/far"}
+    assert there_seen == {"N": "counter", "T": "Counter", "W": "lab", "P": "/main/lab"}
 
 
-@played(joined)
+@on_both()
 async def test_both_sides_see_the_same_artifact(two) -> None:
     await two.shared()
     ann = two.here.add_agent("ann", "", focus=["lab/counter"])
-    bob = two.there.add_agent("bob", "+!go <- inc(4).", join=["/main/far"])
+    bob = two.there.add_agent("bob", "+!go <- inc(4).", join=["/main/lab"])
     await bob.achieve("go").wait(timeout=9)
     assert await ann.until("count(X) & X > 1", timeout=1) == {"X": 5}
 
 
-@played(
-    joined,
-    prints=["[bob] gone7", "[bob] 5", '[bob] makeArtifactFailure("init_failed","third")', "[bob] gone5"],
+@on_both(
+    ["[bob] gone7", "[bob] 5", '[bob] makeArtifactFailure("init_failed","third")', "[bob] gone5"],
 )
 async def test_making_linking_and_disposing_reach_the_other_system(two) -> None:
-    remote = await two.shared()
+    await two.shared()
+    remote = two.there.environment.workspace("/main/lab")
     bob = two.there.add_agent(
         "bob",
         """
-        +!make <- joinWorkspace("/main/far"); makeArtifact("second", "Counter", [7], Id); focus(Id);
+        +!make <- joinWorkspace("/main/lab"); makeArtifact("second", "Counter", [7], Id); focus(Id);
                   lookupArtifact("counter", First); linkArtifacts(First, "next", Id);
                   pass[artifact_id(First)]; ?count(N); .print(N).
         +!wrong <- makeArtifact("third", "Counter", [far]).
@@ -212,7 +276,7 @@ async def test_making_linking_and_disposing_reach_the_other_system(two) -> None:
     )
     await bob.achieve("make").wait(timeout=9)
     second = remote.lookup("second")
-    assert (second.creator, second.workspace) == ("bob", "/main/far")
+    assert (second.creator, second.workspace) == ("bob", "/main/lab")
     await bob.achieve("wrong").wait(timeout=9)
     await bob.achieve("drop").wait(timeout=9)
     await bob.until("not count(_)", timeout=1)
@@ -221,10 +285,10 @@ async def test_making_linking_and_disposing_reach_the_other_system(two) -> None:
         remote.lookup("second")
 
 
-@played(joined)
+@on_both()
 async def test_operations_of_the_other_system_are_cancelled(two) -> None:
     await two.shared()
-    bob = two.there.add_agent("bob", "+!go <- drive.", join=["/main/far"])
+    bob = two.there.add_agent("bob", "+!go <- drive.", join=["/main/lab"])
     ann = two.here.add_agent("ann", "", focus=["lab/counter"])
     goal = bob.achieve("go")
     await ann.until("driving", timeout=1)
@@ -240,20 +304,21 @@ async def test_operations_of_the_other_system_are_cancelled(two) -> None:
     assert failed.value.reason("env_failure_reason").functor == "artifact_disposed"  # type: ignore[attr-defined]
 
 
-@played(joined)
+@on_both()
 async def test_stopping_to_focus_and_killing_reach_the_other_system(two) -> None:
     await two.shared()
     lab = two.here.environment.workspace("/main/lab")
     counter = lab.lookup("counter")
     bob = two.there.add_agent(
         "bob",
-        '+!go <- joinWorkspace("/main/far"); lookupArtifact("counter", Id); focus(Id). '
+        '+!go <- joinWorkspace("/main/lab"); lookupArtifact("counter", Id); focus(Id). '
         '+!stop <- lookupArtifact("counter", Id); stopFocus(Id).',
     )
     await bob.achieve("go").wait(timeout=9)
     assert [observer.agent for observer in lab.observers(counter)] == ["bob"]  # type: ignore[attr-defined]
     await bob.achieve("stop").wait(timeout=9)
     await bob.until("not count(_)", timeout=1)
+    await two.settled(lambda: lab.observers(counter) == ())  # type: ignore[attr-defined]
     assert lab.observers(counter) == ()  # type: ignore[attr-defined]
     await bob.achieve("go").wait(timeout=9)
     bob.kill()
@@ -261,10 +326,10 @@ async def test_stopping_to_focus_and_killing_reach_the_other_system(two) -> None
     assert lab.observers(counter) == ()  # type: ignore[attr-defined]
 
 
-@played(joined)
+@on_both()
 async def test_python_code_uses_an_artifact_of_the_other_system(two) -> None:
     await two.shared()
-    painter = two.there.session("painter", workspace="/main/far")
+    painter = two.there.session("painter", workspace="/main/lab")
     assert await painter.act("check", 3, Out(), Out()) == (2, ["a", Structure("p", (1, [2]))])
     painter.focus("counter")
     await painter.act("inc")
