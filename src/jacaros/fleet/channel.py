@@ -234,9 +234,8 @@ class Channel:
         self._transmit(b"%b%c%b" % (_MAGIC, VERSION, _write_packet(packet)))
 
     def ping(self) -> None:
-        """Send a packet without payloads, which also acknowledges."""
-        if self._open:
-            self._emit(self._base + self._sent, [])
+        """Send a packet without payloads, which also acknowledges, even to a member that is lost."""
+        self._emit(self._base + self._sent, [])
 
     # ---- from the other side
 

@@ -1,16 +1,18 @@
 """How a system joins a fleet."""
 
-from collections.abc import Awaitable, Callable, Collection
+from collections.abc import Awaitable, Callable
 
 from jacaros.fleet.carrier import Carrier
-from jacaros.fleet.member import Member, new_id
+from jacaros.fleet.member import SILENCE, Member, new_id
+from jacaros.fleet.rights import Rights
 from jacaros.runtime.mas.system import Join, System
 
 
 def joining(
     carrier: Carrier,
     name: str,
-    tell_how: Collection[str] = (),
+    rights: Rights | None = None,
+    silence: float = SILENCE,
     joined: Callable[[Member], None] | None = None,
 ) -> Join:
     """Return a function that joins a system to the fleet of a carrier.
@@ -18,12 +20,13 @@ def joining(
     Args:
         carrier: the network.
         name: name of the member, unique in the fleet.
-        tell_how: names of members that may change the programs of agents here; ``*``: all.
+        rights: what other members may do here. Default: send messages, observe and use artifacts.
+        silence: seconds after which a member that says nothing is lost.
         joined: called with the member when it has joined.
     """
 
     async def join(system: System) -> Callable[[], Awaitable[None]]:
-        member = Member(system, carrier, new_id(name), tell_how)
+        member = Member(system, carrier, new_id(name), rights or Rights(), silence)
         await member.join()
         if joined is not None:
             joined(member)

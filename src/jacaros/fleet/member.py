@@ -3,7 +3,7 @@
 import os
 import time
 from collections import deque
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from secrets import token_hex
 
 from jacaros.fleet import protocol
@@ -13,12 +13,13 @@ from jacaros.fleet.artifacts import ArtifactNames
 from jacaros.fleet.carrier import Carrier, MemberId
 from jacaros.fleet.channel import Malformed, read_packet
 from jacaros.fleet.peer import Peer
+from jacaros.fleet.rights import Rights
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.mas.directory import NAME as DIRECTORY_NAME
 from jacaros.runtime.mas.system import System
 from jacaros.runtime.timers import Timer
 
-SILENCE = 2.5
+SILENCE = 2.0
 """Seconds after which a member that says nothing is lost. Its loop may be blocked while its network answers."""
 PING = 0.5
 """Seconds between signs of life."""
@@ -26,9 +27,10 @@ MEMORY = 60.0
 """Seconds for which messages and focuses wait for a lost member to return."""
 GOODBYE = 0.5
 """Seconds for which the end of a member waits until the others have what it said last."""
-
 _DEPARTED = 100
 """Runs that have ended whose last datagrams are ignored."""
+_MOST = 1000
+"""Other members, and different warnings, at most."""
 
 WhenChanged = Callable[[str, str], None]
 """Called with the name and the new state of a member: ``joined``, ``lost`` or ``left``."""
@@ -46,7 +48,8 @@ class Member:
         system: the system.
         carrier: its network.
         me: this run.
-        tell_how: names of members that may change the programs of agents here.
+        rights: what other members may do here.
+        silence: seconds after which a member that says nothing is lost.
 
     Attributes:
         peers: other members by name, also lost ones.
@@ -54,12 +57,14 @@ class Member:
     """
 
     def __init__(
-        self, system: System, carrier: Carrier, me: MemberId, tell_how: Collection[str] = ()
+        self, system: System, carrier: Carrier, me: MemberId, rights: Rights, silence: float = SILENCE
     ) -> None:
         self.me = me
         self.peers: dict[str, Peer] = {}
         self.watchers: list[WhenChanged] = []
-        self._system, self._carrier, self._tell_how = system, carrier, tell_how
+        self._system, self._carrier, self._rights = system, carrier, rights
+        self._silence = silence
+        self._pulse_at = 0.0
         self._reported: set[str] = set()
         self._timer: Timer | None = None
         self._forgetting: dict[MemberId, Timer] = {}
@@ -71,7 +76,7 @@ class Member:
         self._ends: list[Callable[[], object]] = []
 
     def _warn(self, text: str) -> None:
-        if text not in self._reported:
+        if text not in self._reported and len(self._reported) < _MOST:
             self._reported.add(text)
             self._system.console.log(f"[fleet] {text}", "warning")
 
@@ -92,12 +97,20 @@ class Member:
         self._ends.append(directory.watch(self._agent_news))
         self._ends.append(self._announced.end)
         await self._carrier.open(self.me, self)
-        if self._rival is not None:
+        self._pulse_at = self._system.clock.elapsed
+        if not await self._is_alone():
             await self.leave()
             raise UsageError(
                 f"the fleet has a member called {self.me.name} already; choose another name with --member"
             )
         self._pulse()
+
+    async def _is_alone(self) -> bool:
+        """Return whether no other member has the name of this one. A run that has just been killed may still be known."""
+        patience = self._system.clock.elapsed + self._silence + 1.0
+        while self._rival is not None and self._system.clock.elapsed < patience:
+            await self._system.clock.sleep(0.05)
+        return self._rival is None
 
     async def leave(self) -> None:
         """Leave the fleet, after the others have got what was said last."""
@@ -128,10 +141,15 @@ class Member:
     def _pulse(self) -> None:
         """Give signs of life, and notice who gives none."""
         clock = self._system.clock
+        late = clock.elapsed - self._pulse_at > self._silence / 2  # the others may have spoken meanwhile
+        self._pulse_at = clock.elapsed
         self._timer = clock.call_later(PING, self._pulse)
         for peer in list(self.peers.values()):
-            peer.channel.ping()
-            if peer.is_there and clock.elapsed - peer.heard_at > SILENCE:
+            if not peer.is_absent:
+                peer.channel.ping()
+            if late:
+                peer.heard_at = clock.elapsed
+            elif peer.is_there and clock.elapsed - peer.heard_at > self._silence:
                 peer.lose()
 
     # ---- what the carrier tells
@@ -144,7 +162,7 @@ class Member:
             self.refused(sender.name, str(error))
             return
         peer = self._peer(sender)
-        if peer is not None:
+        if peer is not None and not peer.is_absent:
             peer.find()
             peer.heard(packet)
 
@@ -154,27 +172,34 @@ class Member:
 
     def present(self, member: MemberId, is_present: bool) -> None:
         """Hear that another member is there, or is not."""
-        if is_present:
-            peer = self._peer(member)
-            if peer is not None:
-                peer.heard_at = self._system.clock.elapsed
-                peer.find()
-        elif (known := self.peers.get(member.name)) is not None and known.id == member:
-            known.lose()
+        if not is_present:
+            if self._rival == member:
+                self._rival = None
+            known = self.peers.get(member.name)
+            if known is not None and known.id == member:
+                known.is_absent = True
+                known.lose()
+            return
+        peer = self._peer(member)
+        if peer is not None:
+            peer.is_absent = False
+            peer.heard_at = self._system.clock.elapsed
+            peer.find()
 
     def _peer(self, member: MemberId) -> Peer | None:
-        """Return another member, which may be new. None: it is an earlier run of one, or has the name of this one."""
-        if member.name == self.me.name:
-            self._meet_rival(member)
-            return None
+        """Return another member, which may be new. None: it has ended, or its name is taken."""
         known = self.peers.get(member.name)
         if known is not None and known.id == member:
             return known
-        if member in self._departed or (known is not None and known.id.incarnation > member.incarnation):
+        if member.name == self.me.name:
+            self._meet_rival(member)
+            return None
+        if member in self._departed or len(self.peers) >= _MOST:
             return None
         if known is not None:
-            known.lose("left")
-            self._forget(known)
+            if known.is_there or known.id.incarnation > member.incarnation:
+                return None  # if it is another member of this name, it tells so itself
+            self._end(known)
         peer = self.peers[member.name] = Peer(
             member,
             self._system,
@@ -182,7 +207,7 @@ class Member:
             self._agents,
             self._names,
             lambda datagram: self._carrier.send(member, datagram),
-            member.name in self._tell_how or "*" in self._tell_how,
+            self._rights.of(member.name),
             self._changed,
         )
         return peer
@@ -193,6 +218,7 @@ class Member:
             return
         if member.incarnation < self.me.incarnation:
             self._rival = member
+            return
         self._warn(f"another member is called {self.me.name}, too; the one that began first keeps the name")
 
     def _changed(self, peer: Peer, state: str) -> None:
@@ -203,19 +229,19 @@ class Member:
         if waiting is not None:
             waiting.cancel()
         if state == "lost":
-            self._forgetting[peer.id] = self._system.clock.call_later(MEMORY, lambda: self._forget(peer))
+            self._forgetting[peer.id] = self._system.clock.call_later(MEMORY, peer.forget)
         elif state == "left":
-            self._forget(peer)
+            self._end(peer)
         for watcher in tuple(self.watchers):
             watcher(peer.name, state)
 
-    def _forget(self, peer: Peer) -> None:
-        if self.peers.get(peer.name) is not peer:
-            return
-        del self.peers[peer.name]
+    def _end(self, peer: Peer) -> None:
+        """End with a run of another member that will not return."""
         waiting = self._forgetting.pop(peer.id, None)
         if waiting is not None:
             waiting.cancel()
+        if self.peers.get(peer.name) is peer:
+            del self.peers[peer.name]
         self._departed.append(peer.id)
         peer.forget()
 

@@ -6,6 +6,7 @@ of its own; here they are passed on to the event loop.
 
 import asyncio
 from collections import deque
+from contextlib import suppress
 from typing import Any
 
 import zenoh
@@ -76,8 +77,9 @@ class ZenohCarrier:
         if len(self._arrived) < _MOST or kind == "token":
             first = not self._arrived
             self._arrived.append((kind, sample))
-            if first and self._loop is not None and not self._loop.is_closed():
-                self._loop.call_soon_threadsafe(self._take)
+            if first and self._loop is not None:
+                with suppress(RuntimeError):  # the loop is closed
+                    self._loop.call_soon_threadsafe(self._take)
 
     # ---- on the event loop
 

@@ -1,6 +1,6 @@
 """Another member, as this one knows it: what it has, and what is under way between both."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from functools import partial
 from typing import Any
 
@@ -18,6 +18,7 @@ from jacaros.fleet.artifacts import ArtifactNames
 from jacaros.fleet.carrier import MemberId
 from jacaros.fleet.channel import Channel, Packet
 from jacaros.fleet.remote import Calls, RemoteWorkspace, RemoteWorkspaces
+from jacaros.fleet.rights import OPERATE, SEE, SEND, TELL_HOW
 from jacaros.fleet.served import Served
 from jacaros.fleet.wire import NotSendable, Wire
 from jacaros.runtime.mas.system import System
@@ -42,11 +43,12 @@ class Peer:
         agents: agents of all other members.
         names: names of artifacts.
         transmit: sends a datagram to it.
-        may_tell_how: whether it may change programs here.
+        rights: what it may do here.
         changed: called with its new state: ``joined``, ``lost`` or ``left``.
 
     Attributes:
         is_there: whether it answers.
+        is_absent: whether the network says that it is not there.
         heard_at: when it was last heard, on the clock of the run.
         picture: what it said of itself last; None before.
     """
@@ -59,16 +61,16 @@ class Peer:
         agents: FleetAgents,
         names: ArtifactNames,
         transmit: Callable[[bytes], None],
-        may_tell_how: bool,
+        rights: Collection[str],
         changed: Callable[["Peer", str], None],
     ) -> None:
         self.id, self.name = id, id.name
-        self.is_there = False
+        self.is_there = self.is_absent = False
         self.heard_at = system.clock.elapsed
         self.picture: protocol.Here | None = None
         self.channel = Channel(system.clock, transmit, self._received)
         self._system, self._announced, self._agents, self._names = system, announced, agents, names
-        self._may_tell_how, self._changed = may_tell_how, changed
+        self._rights, self._changed = rights, changed
         self._epoch = 1
         self._its_epoch = 0
         self._state = ""
@@ -91,13 +93,13 @@ class Peer:
             protocol.Returned: self._on_returned,
             protocol.WorkspaceNews: self._on_workspace,
             protocol.ArtifactNews: self._on_artifact,
-            protocol.Execute: self._served.on_execute,
-            protocol.Create: self._served.on_create,
-            protocol.CreateWorkspace: self._served.on_create_workspace,
-            protocol.Dispose: self._served.on_dispose,
-            protocol.Focus: self._served.on_focus,
+            protocol.Execute: partial(self._allowed, OPERATE, self._served.on_execute),
+            protocol.Create: partial(self._allowed, OPERATE, self._served.on_create),
+            protocol.CreateWorkspace: partial(self._allowed, OPERATE, self._served.on_create_workspace),
+            protocol.Dispose: partial(self._allowed, OPERATE, self._served.on_dispose),
+            protocol.Focus: partial(self._allowed, SEE, self._served.on_focus),
             protocol.StopFocus: self._served.on_stop_focus,
-            protocol.Link: self._served.on_link,
+            protocol.Link: partial(self._allowed, OPERATE, self._served.on_link),
             protocol.Handle: self._served.on_handle,
             protocol.Ended: self._calls.ended,
             protocol.Observed: self._remote.observed,
@@ -139,6 +141,15 @@ class Peer:
             self.report(f"dropped something that is no valid message: {error}")
         except OperationFailed as failure:
             self.report(failure.message)
+
+    def _allowed(self, right: str, handler: Callable[[Any], None], asked: Any) -> None:
+        """Do what it asks for if it may."""
+        if right in self._rights:
+            handler(asked)
+            return
+        self.report(f"refused a request: it has not the right `{right}` (--fleet-allow)")
+        text = f"{self._system.deployment.name} gives this system not the right `{right}`"
+        self.say(protocol.Ended(asked.call, False, text, [1, "not_permitted", [0, right]], [], None))
 
     # ---- its life
 
@@ -299,8 +310,9 @@ class Peer:
 
     def _deliver(self, said: protocol.Message) -> str:
         """Put a message into the mailbox of its receiver. Return why that is impossible, or an empty text."""
-        if said.performative in _HOW and not self._may_tell_how:
-            self.report(f"{said.sender} may not change programs here ({said.performative})")
+        right = TELL_HOW if said.performative in _HOW else SEND
+        if right not in self._rights:
+            self.report(f"refused a message: it has not the right `{right}` (--fleet-allow)")
             return "not_permitted"
         if said.in_reply_to is not None:
             self._asked.pop(said.in_reply_to, None)
