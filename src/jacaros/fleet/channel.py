@@ -32,6 +32,10 @@ _ACK_EVERY = 32
 """Payloads after which it does not wait."""
 _SOONEST, _LATEST = 0.05, 1.0
 """Bounds of the seconds after which a payload is sent again."""
+BUSY = 64 << 10
+"""Bytes under way beyond which the other side is behind."""
+_LAG = 0.1
+"""Seconds without an acknowledgement after which it is, too, unless the way there and back takes longer."""
 _SAMPLES = 16
 """Measurements of the clocks from which that with the shortest delay is taken."""
 
@@ -88,10 +92,12 @@ class _Kept:
 
     Attributes:
         payload: empty if it was withdrawn.
+        at: when it was sent, or is to be sent.
         on_lost: called if it is given up; None: it is withdrawn as soon as the other member is lost.
     """
 
     payload: bytes
+    at: float
     on_lost: Callable[[], None] | None
 
 
@@ -100,12 +106,13 @@ class Clocks:
 
     Attributes:
         delay: seconds there and back, smoothed; None before the first measurement.
+        least: the shortest delay so far.
         offset: seconds that the other clock is ahead of ours.
     """
 
     def __init__(self) -> None:
         self.delay: float | None = None
-        self.offset = 0.0
+        self.least = self.offset = 0.0
         self._samples: deque[tuple[float, float]] = deque(maxlen=_SAMPLES)
         self._heard = self._heard_at = 0.0
 
@@ -116,6 +123,7 @@ class Clocks:
             return
         delay = max(0.0, now - packet.echo - packet.held)
         received = packet.sent - packet.held
+        self.least = min(delay, self.least) if self._samples else delay
         self._samples.append((delay, (received - packet.echo + packet.sent - now) / 2))
         self.offset = min(self._samples)[1]
         self.delay = delay if self.delay is None else self.delay + (delay - self.delay) / 8
@@ -136,7 +144,7 @@ class Channel:
     Attributes:
         clocks: delay, and offset of the other clock.
         backlog: bytes that have not been acknowledged.
-        when_drained: called when everything has been acknowledged, or None.
+        when_drained: called whenever something has been acknowledged and the other side is not behind, or None.
     """
 
     def __init__(
@@ -161,11 +169,19 @@ class Channel:
         self._resend_timer: Timer | None = None
         self._open = True
 
+    @property
+    def is_behind(self) -> bool:
+        """Whether what is sent now would wait on its way: the link or the other side is slow."""
+        if not self._kept:
+            return False
+        patience = max(_LAG, 3 * self.clocks.least)
+        return self.backlog > BUSY or self._clock.elapsed - self._kept[0].at > patience
+
     # ---- to the other side
 
     def send(self, payload: bytes, on_lost: Callable[[], None] | None = None) -> None:
         """Send a payload. See `_Kept` for *on_lost*."""
-        self._kept.append(_Kept(payload, on_lost))
+        self._kept.append(_Kept(payload, self._clock.elapsed, on_lost))
         self.backlog += len(payload)
         if self._open and not self._flushing:
             # The first one goes at once; those that follow in this turn of the loop go together.
@@ -303,7 +319,7 @@ class Channel:
         self._tries = 0
         self._sent_at = self._clock.elapsed
         self._flush()
-        if not self._kept and self.when_drained is not None:
+        if self.when_drained is not None and not self.is_behind:
             self.when_drained()
 
     # ---- losses

@@ -111,6 +111,11 @@ class Peer:
     # ---- the line
 
     @property
+    def is_behind(self) -> bool:
+        """Whether what is sent now would wait on its way."""
+        return self.channel.is_behind
+
+    @property
     def backlog(self) -> int:
         """Bytes that have not arrived there."""
         return self.channel.backlog

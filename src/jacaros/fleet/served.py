@@ -14,8 +14,6 @@ from jacaros.fleet import protocol
 from jacaros.fleet.artifacts import ArtifactNames
 from jacaros.fleet.wire import ATOM, LIST, NotSendable, Wire
 
-BUSY = 64 << 10
-"""Bytes under way beyond which observations wait and are put together: the newest values go when there is room."""
 _SIGNALS = 1000
 """Signals of one observer that are kept meanwhile."""
 
@@ -24,8 +22,8 @@ class Line(Protocol):
     """The way to the other member."""
 
     @property
-    def backlog(self) -> int:
-        """Bytes that have not arrived there."""
+    def is_behind(self) -> bool:
+        """Whether what is sent now would wait on its way."""
 
     def say(self, said: protocol.Said) -> None:
         """Say something to it."""
@@ -47,7 +45,7 @@ class _Watching:
         self._signals: list[tuple[str, object]] = []
 
     def observe(self, observation: Observation) -> None:
-        """Take in what was published, and send it unless too much is under way."""
+        """Take in what was published, and send it. On a slow link it waits: only the newest values go then."""
         for new in (*(after for _, after in observation.changed), *observation.added):
             self._properties[new.key] = new
         for old in observation.removed:
@@ -58,10 +56,10 @@ class _Watching:
         if len(self._signals) > _SIGNALS:
             del self._signals[:-_SIGNALS]
             self._served.line.report(f"the link is too slow: signals of {self.artifact.path} were left out")
-        if self._served.line.backlog <= BUSY:
-            self.flush()
-        else:
+        if self._served.line.is_behind:
             self._served.late[self] = None
+        else:
+            self.flush()
 
     def begin(self) -> None:
         """Send the whole picture, even if it is empty."""
