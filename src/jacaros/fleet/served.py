@@ -68,6 +68,8 @@ class _Watching:
 
     def flush(self) -> None:
         """Send what has been put together."""
+        if not (self._whole or self._properties or self._removed or self._signals):
+            return
         data = self._served.data
         properties = [
             (each.key, each.name, data(list(each.values), each.name), data(list(each.annotations), each.name))
