@@ -32,9 +32,7 @@ import hashlib
 import json
 import os
 import secrets
-import stat
 import sys
-import tempfile
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -45,6 +43,7 @@ from jacaros.robots.ros.guarded import Guarded, guarded_by
 from jacaros.robots.ros.node import Sample
 from jacaros.robots.ros.qos import QoS
 from jacaros.runtime.errors import UsageError
+from jacaros.runtime.files.private import private_folder
 
 PERIOD = 0.05
 """Seconds between two heartbeats."""
@@ -70,11 +69,7 @@ def socket_path(kind: str, graph: str, node: str) -> Path:
     """
     if sys.platform == "win32":
         raise UsageError(NO_GUARD)
-    folder = Path(tempfile.gettempdir()) / f"jacaros-{os.getuid()}"
-    folder.mkdir(mode=0o700, exist_ok=True)
-    found = folder.lstat()
-    if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid() or found.st_mode & 0o077:
-        raise UsageError(f"{folder}: expected a folder of yours with mode 700; heartbeats go through it")
+    folder = private_folder("heartbeats")
     mark = hashlib.sha256(f"{kind} {graph} {node}".encode()).hexdigest()[:12]
     return folder / f"guard-{mark}.sock"
 
