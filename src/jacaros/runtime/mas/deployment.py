@@ -46,6 +46,9 @@ class AgentSpec:
         beliefs, goals: literals separated by commas, as text (see `jacaros.agents.language.loader.parse_literals`).
         join: workspaces it joins at its start, in order. They include all workspaces of ``focus``.
         focus: artifacts it focuses at its start, in order.
+        join_later: those of ``join`` that need not exist at the start, as workspaces of other nodes: it joins them, and
+            focuses their artifacts, as soon as they appear.
+        node: the node that it runs at; None if the project does not say.
         agent_class: name of the class as written.
         python_class: the class of a Python agent, in place of a file.
         span: location of the declaration.
@@ -59,6 +62,8 @@ class AgentSpec:
     goals: str = ""
     join: tuple[str, ...] = ()
     focus: tuple[FocusSpec, ...] = ()
+    join_later: tuple[str, ...] = ()
+    node: str | None = None
     agent_class: str | None = None
     python_class: type | None = None
     span: Span | None = field(default=None, compare=False, repr=False)
@@ -96,12 +101,23 @@ class WorkspaceSpec:
     """A workspace to be created at the start: a child of ``parent``, or of ``/main`` without one.
 
     ``artifacts`` are created in this order. ``agents`` are as written (``*``: all); they also have it in their ``join``.
+    ``node`` is the node that it is at, or that its parent is at; None if the project does not say.
     """
 
     name: str
     artifacts: tuple[ArtifactSpec, ...] = ()
     agents: tuple[str, ...] = ()
     parent: str | None = None
+    node: str | None = None
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class NodeSpec:
+    """A node: one process of the system, on any computer. ``address`` is ``host`` or ``host:port`` as written."""
+
+    name: str
+    address: str | None = None
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
@@ -113,6 +129,7 @@ class Deployment:
         name: name of the system.
         base_path: folder of the project file.
         agents, workspaces: in the order of the file, but a workspace comes after its parent.
+        nodes: in the order of the file. What names none runs at the first one.
         environment: the class of ``environment:`` in a `.mas2j` file as written; None without one.
         artifact_environment: whether agents use artifacts: in a `.jcm` file, a lone `.asl` file, or with one of the known
             environment classes.
@@ -126,6 +143,7 @@ class Deployment:
     base_path: Path
     agents: tuple[AgentSpec, ...] = ()
     workspaces: tuple[WorkspaceSpec, ...] = ()
+    nodes: tuple[NodeSpec, ...] = ()
     environment: str | None = None
     artifact_environment: bool = False
     world: str | None = None

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 from jacaros.agents.language.diagnostics import Diagnostic, Span
-from jacaros.runtime.mas.deployment import ArtifactSpec
+from jacaros.runtime.mas.deployment import ArtifactSpec, NodeSpec
 
 CODE: Final = "no-effect"
 _NAMED: Final = 3
@@ -32,7 +32,6 @@ ORGANISATIONS: Final = Ignored(
     "coordinate agents by messages or through an artifact",
 )
 INSTITUTIONS: Final = Ignored("institutions", "institutions are not supported")
-NODES: Final = Ignored("nodes and hosts", "all agents run in one process")
 PACKAGES: Final = Ignored(
     "packages", "Java packages are not supported", "install Python packages beside jacaros with pip"
 )
@@ -123,22 +122,22 @@ AgentName = tuple[str, str | None, Span]
 
 @dataclass
 class FocusPart:
-    """``[namespace::][workspace.]artifact`` in an agent's ``focus:``. ``elsewhere`` is true if it is on another node."""
+    """``[namespace::][workspace.]artifact[@node]`` in an agent's ``focus:``."""
 
     artifact: str
     workspace: str | None
     namespace: str | None
     span: Span
-    elsewhere: bool = False
+    node: WrittenName | None = None
 
 
 @dataclass
 class JoinPart:
-    """A workspace in an agent's ``join:``. ``elsewhere`` is true if it is on another node."""
+    """``workspace[@node]`` in an agent's ``join:``."""
 
     workspace: str
     span: Span
-    elsewhere: bool = False
+    node: WrittenName | None = None
 
 
 @dataclass
@@ -162,6 +161,7 @@ class AgentPart:
     join: list[JoinPart] = field(default_factory=list)
     focus: list[FocusPart] = field(default_factory=list)
     agent_class: str | None = None
+    node: WrittenName | None = None
     folders: tuple[Path, ...] = ()
 
     def instance_names(self) -> list[str]:
@@ -191,6 +191,7 @@ class WorkspacePart:
     parent_span: Span | None = None
     artifacts: list[ArtifactDeclaration] = field(default_factory=list)
     agents: list[WrittenName] = field(default_factory=list)
+    node: WrittenName | None = None
 
 
 @dataclass
@@ -201,6 +202,7 @@ class ProjectPart:
     uses: list[WrittenName] = field(default_factory=list)
     agents: list[AgentPart] = field(default_factory=list)
     workspaces: list[WorkspacePart] = field(default_factory=list)
+    nodes: list[NodeSpec] = field(default_factory=list)
     organisations: dict[str, Ignored] = field(default_factory=dict)
     environment: str | None = None
     world: str | None = None

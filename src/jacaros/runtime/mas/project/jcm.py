@@ -4,6 +4,7 @@ Beyond JaCaMo's grammar they accept sections in any order, blocks on one line, n
 lists and structures as arguments, ``parent:`` of workspaces, paths as names of workspaces, ``world:`` and ``mapping:``.
 """
 
+import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Final
@@ -12,12 +13,11 @@ from jacaros.agents.language.cursor import is_slip_of
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.runtime.files.texts import did_you_mean, suggestion
-from jacaros.runtime.mas.deployment import ArtifactSpec
+from jacaros.runtime.mas.deployment import ArtifactSpec, NodeSpec
 from jacaros.runtime.mas.project.cursor import ProjectPanic, ProjectToken, UnclosedPanic, text_of
 from jacaros.runtime.mas.project.declarations import (
     INSPECTORS,
     INSTITUTIONS,
-    NODES,
     ORGANISATIONS,
     PACKAGES,
     PATHS,
@@ -35,6 +35,8 @@ from jacaros.runtime.mas.project.language import NAME, ProjectReader
 
 _OWN_PLATFORMS: Final = ("cartago", "local", "centralised", "jacamo.platform.Cartago")
 """Platforms that JaCaROS replaces, so they need no warning."""
+_ADDRESS: Final = re.compile(r"(\[[0-9a-fA-F:.]+\]|[\w.-]+)(:[0-9]{1,5})?")
+"""``host`` or ``host:port``; an address of IPv6 is in brackets."""
 
 
 @dataclass(frozen=True)
@@ -242,14 +244,13 @@ class JcmReader(ProjectReader):
             last = self.advance()
         return self.file.text[first.start : last.stop], self.span_of(first).to(self.span_of(last))
 
-    def _node_of(self, what: str) -> bool:
-        """Read ``@ node`` after the name of something on another node. Return whether it is present."""
-        at = self.token
-        if not self.accept("@"):
-            return False
-        name = self.name("the name of a node")
-        self.unsupported(NODES, f"`@ {name.text}` of {what}", self.span_of(at).to(self.span_of(name)))
-        return True
+    def _node_after_at(self) -> WrittenName | None:
+        """Read ``@ node`` after the name of something that may be at another node; None without it."""
+        return self._node_name() if self.accept("@") else None
+
+    def _node_name(self) -> WrittenName:
+        name = self.take("the name of a node", *NAME)
+        return text_of(name), self.span_of(name)
 
     def _arguments(self, closer: str = ")") -> tuple[object, ...]:
         """Return the values between the current bracket and its *closer*."""
@@ -299,12 +300,15 @@ class JcmReader(ProjectReader):
                 self.unsupported(PLATFORMS, f"the platform `{name}`", span)
 
     def _node(self, _: ProjectToken) -> None:
-        """``node name [running] [@ host[:port]]``."""
-        name = self.name("the name of a node")
+        """``node name [running] [@ host[:port]]``, or ``at`` instead of ``@``."""
+        name, span = self._node_name()
         self.accept("running")
-        if self.accept("@"):
-            self._file_name("the address of the node")
-        self.unsupported(NODES, f"the node `{name.text}`", self.span_of(name))
+        address = None
+        if self.accept("@") or self.accept("at"):
+            address, place = self._file_name("the address of the node")
+            if _ADDRESS.fullmatch(address) is None:
+                self.report(f"invalid address `{address}`", place, "write `host` or `host:port`")
+        self.part.nodes.append(NodeSpec(name, address, span))
 
     def _package(self, _: ProjectToken) -> None:
         """``uses package: name "file or coordinates"``."""
@@ -333,9 +337,7 @@ class JcmReader(ProjectReader):
 
     def _join(self, agent: AgentPart, _: ProjectToken) -> None:
         for token in self._items(*NAME):
-            name = text_of(token)
-            elsewhere = self._node_of(f"the workspace `{name}`")
-            agent.join.append(JoinPart(name, self.span_of(token), elsewhere))
+            agent.join.append(JoinPart(text_of(token), self.span_of(token), self._node_after_at()))
 
     def _focus(self, agent: AgentPart, _: ProjectToken) -> None:
         for first in self._items("word"):
@@ -344,8 +346,8 @@ class JcmReader(ProjectReader):
                 namespace, token = token.text, self.name("the name of an artifact")
             workspace, dot, artifact = token.text.rpartition(".")
             span = self.span_of(first).to(self.span_of(token))
-            elsewhere = self._node_of(f"the artifact `{token.text}`")
-            agent.focus.append(FocusPart(artifact, workspace if dot else None, namespace, span, elsewhere))
+            node = self._node_after_at()
+            agent.focus.append(FocusPart(artifact, workspace if dot else None, namespace, span, node))
 
     def _instances(self, agent: AgentPart, key: ProjectToken) -> None:
         values = self.names()
@@ -365,7 +367,7 @@ class JcmReader(ProjectReader):
             group = self.name("the name of a group")
             span = self.span_of(role).to(self.span_of(group))
             self.unsupported(ROLES, f"the role `{role.text}` in `{group.text}`", span)
-            self._node_of(f"the group `{group.text}`")
+            self._node_after_at()
 
     def _class(self, agent: AgentPart, key: ProjectToken) -> None:
         found = self._classes(f"the class for `{key.text}`")
@@ -377,9 +379,9 @@ class JcmReader(ProjectReader):
         for text, span in self._classes():
             self.class_of_agent(key.text, text, span)
 
-    def _host_of_agent(self, agent: AgentPart, key: ProjectToken) -> None:
-        self.names()
-        self.unsupported(NODES, f"`{key.text}` of agent `{agent.name}`", self.span_of(key))
+    def _node_of(self, declared: AgentPart | WorkspacePart, _: ProjectToken) -> None:
+        """``node: name``, or ``host: name``."""
+        declared.node = self._node_name()
 
     def _option(self, agent: AgentPart, key: ProjectToken) -> None:
         """Read an option of Jason, or a parameter of the project's own."""
@@ -412,10 +414,6 @@ class JcmReader(ProjectReader):
     def _parent(self, workspace: WorkspacePart, _: ProjectToken) -> None:
         parent = self.name("the name of a workspace")
         workspace.parent, workspace.parent_span = parent.text, self.span_of(parent)
-
-    def _host_of_workspace(self, workspace: WorkspacePart, key: ProjectToken) -> None:
-        self.name("the name of a node")
-        self.unsupported(NODES, f"`{key.text}` of workspace `{workspace.name}`", self.span_of(key))
 
     def _inspector(self, workspace: WorkspacePart, key: ProjectToken) -> None:
         what = f"`debug` of workspace `{workspace.name}`"
@@ -476,7 +474,7 @@ class JcmReader(ProjectReader):
         "world": lambda self, _: self.world(),
         "mapping": lambda self, key: self.part.mappings.extend(self.some_names(key)),
     }
-    sections = ("agent", "workspace", "institution", "organisation", *readers)
+    sections = ("agent", "workspace", "node", "institution", "organisation", *readers)
 
 
 _ARTIFACT: Final = "write `artifact name : Class(arguments)`"
@@ -504,8 +502,8 @@ _AGENT: Final = Block(
         "ag-bb-class": _R._class_without_effect,
         "verbose": _R._option,
         "debug": _R._option,
-        "host": _R._host_of_agent,
-        "node": _R._host_of_agent,
+        "host": _R._node_of,
+        "node": _R._node_of,
     },
     other=_R._option,
     is_strict=True,
@@ -515,8 +513,8 @@ _WORKSPACE: Final = Block(
     {
         "agents": _R._agents,
         "parent": _R._parent,
-        "host": _R._host_of_workspace,
-        "node": _R._host_of_workspace,
+        "host": _R._node_of,
+        "node": _R._node_of,
         "debug": _R._inspector_key,
     },
     {"artifact": _R._artifact, "debug": _R._inspector},

@@ -4,9 +4,15 @@ from typing import ClassVar, Final
 
 from jacaros.agents.language.cursor import is_slip_of
 from jacaros.runtime.files.texts import did_you_mean, suggestion
-from jacaros.runtime.mas.deployment import CARTAGO_ENVIRONMENTS
+from jacaros.runtime.mas.deployment import CARTAGO_ENVIRONMENTS, NodeSpec
 from jacaros.runtime.mas.project.cursor import ProjectPanic, ProjectToken, text_of
-from jacaros.runtime.mas.project.declarations import INFRASTRUCTURES, JAVA, JAVA_ENVIRONMENT, NODES, AgentPart
+from jacaros.runtime.mas.project.declarations import (
+    INFRASTRUCTURES,
+    JAVA,
+    JAVA_ENVIRONMENT,
+    AgentPart,
+    WrittenName,
+)
 from jacaros.runtime.mas.project.language import ProjectReader
 
 _AGENT_KEYS: Final = ("agentArchClass", "agentClass", "beliefBaseClass", "at")
@@ -64,12 +70,18 @@ class Mas2jReader(ProjectReader):
     def _class(self) -> str:
         """Return a class with its arguments, as written, without a following ``at "host"``."""
         text = self.name("a class name").text + self.parameters()
-        at = self.token
         if self.accept("at"):
-            host = self.take("the name of a host", *_VALUE)
-            self.unsupported(NODES, f"`at {text_of(host)}`", self.span_of(at))
+            self._host()
         self.accept(";")
         return text
+
+    def _host(self) -> WrittenName:
+        """Read the name of a host, which declares a node. That of the environment comes first."""
+        token = self.take("the name of a host", *_VALUE)
+        name, span = text_of(token), self.span_of(token)
+        if name not in (node.name for node in self.part.nodes):
+            self.part.nodes.append(NodeSpec(name, span=span))
+        return name, span
 
     # agents
 
@@ -131,8 +143,7 @@ class Mas2jReader(ProjectReader):
             self.fail(f"expected `;` after agent `{agent.name}`, found {key}", help=help)
         self.advance()
         if key.text == "at":
-            self.take("the name of a host", *_VALUE)
-            self.unsupported(NODES, f"`at` of agent `{agent.name}`", self.span_of(key))
+            agent.node = self._host()
         elif key.text == "agentClass":
             agent.agent_class = self.name("a class name").text + self.parameters()
         else:

@@ -139,6 +139,7 @@ def _complete(path: Path, part: ProjectPart) -> None:
 def _import(part: ProjectPart, used: ProjectPart) -> None:
     part.agents[:0] = used.agents
     part.workspaces[:0] = used.workspaces
+    part.nodes[:0] = used.nodes
     part.organisations |= used.organisations
     part.unsupported[:0] = used.unsupported
     part.mapped[:0] = used.mapped
@@ -152,12 +153,17 @@ def _deployment(path: Path, part: ProjectPart, diagnostics: list[Diagnostic]) ->
     resolver = Resolver(part, diagnostics)
     instances = [each for agent in part.agents for each in resolver.instances(agent)]
     resolver.repeated([(agent.name, agent.span) for agent in instances], "agent")
+    resolver.repeated([(node.name, node.span) for node in part.nodes], "node")
+    workspaces = resolver.specs()
+    resolver.nodes.warn_of_unused((*instances, *workspaces))
+    diagnostics += dict.fromkeys(resolver.nodes.problems)
     cartago = (part.environment or "").partition("(")[0] in CARTAGO_ENVIRONMENTS
     return Deployment(
         name=part.name,
         base_path=path.parent,
         agents=tuple(instances),
-        workspaces=resolver.specs(),
+        workspaces=workspaces,
+        nodes=tuple(part.nodes),
         environment=part.environment,
         artifact_environment=path.suffix == _JCM or cartago or bool(part.mapped),
         world=part.world,

@@ -20,6 +20,7 @@ from jacaros.runtime.mas.project.declarations import (
     WorkspacePart,
     WrittenName,
 )
+from jacaros.runtime.mas.project.nodes import Nodes
 
 _MAIN = "/main"
 _DEFAULT_NAMES = frozenset({"workspace", "blackboard", "console", "manrepo", "system"})
@@ -34,10 +35,14 @@ class Resolver:
     Args:
         part: the declarations of the project.
         diagnostics: those found so far; more are added.
+
+    Attributes:
+        nodes: names of the nodes.
     """
 
     def __init__(self, part: ProjectPart, diagnostics: list[Diagnostic]) -> None:
         self._part, self.diagnostics = part, diagnostics
+        self.nodes = Nodes(part.nodes)
         self._paths: dict[str, WorkspacePart | None] = {_MAIN: None}
         for workspace in part.workspaces:
             self._add_workspace(workspace)
@@ -115,10 +120,29 @@ class Resolver:
     def _spec(self, path: str, part: WorkspacePart | None) -> WorkspaceSpec:
         above, _, name = path.rpartition("/")
         parent = self._shortest(above) if above not in ("", _MAIN) else None
+        node = self._node_of(path)
         if part is None:
-            return WorkspaceSpec(name, parent=parent)
+            return WorkspaceSpec(name, parent=parent, node=node)
         artifacts = tuple(artifact.spec for artifact in part.artifacts if artifact.spec.type_name)
-        return WorkspaceSpec(name, artifacts, tuple(agent for agent, _ in part.agents), parent, part.span)
+        agents = tuple(agent for agent, _ in part.agents)
+        return WorkspaceSpec(name, artifacts, agents, parent, node, part.span)
+
+    def _node_of(self, path: str) -> str | None:
+        """Return the node of a workspace: the one it names, or that of the workspace around it."""
+        part = self._paths.get(path)
+        if part is None and path != _MAIN:
+            # Only workspaces below it are declared.
+            part = next(
+                (each for below, each in self._paths.items() if each and below.startswith(f"{path}/")), None
+            )
+        if part is not None and part.node is not None:
+            return self.nodes.named(part.node)
+        above = path.rpartition("/")[0]
+        return None if above in ("", _MAIN) else self._node_of(above)
+
+    def _is_at(self, path: str, node: str | None) -> bool:
+        """Return whether a workspace is at a node. None is the first node."""
+        return (self._node_of(path) or self.nodes.first) == (node or self.nodes.first)
 
     def _check(self, workspace: WorkspacePart, known: set[str]) -> None:
         artifacts = [(artifact.spec.name, artifact.spec.span) for artifact in workspace.artifacts]
@@ -126,10 +150,22 @@ class Resolver:
         for name, agent_span in (*workspace.agents, *focused_by):
             self._check_agent(name, agent_span, known)
         self.repeated(artifacts, "artifact")
+        self._check_node(workspace)
         for name, span in artifacts:
             if name in _DEFAULT_NAMES:
                 message = f"`{name}` is a standard artifact of every workspace"
                 self.error(message, span, "choose another name")
+
+    def _check_node(self, workspace: WorkspacePart) -> None:
+        """Report a workspace at another node than the workspace around it."""
+        path = next((path for path, part in self._paths.items() if part is workspace), _MAIN)
+        above = path.rpartition("/")[0]
+        if above in ("", _MAIN) or self._is_at(above, self._node_of(path)):
+            return
+        node = self._node_of(above) or self.nodes.first
+        message = f"the workspace around `{workspace.name}` is at another node: `{node}`"
+        span = workspace.span if workspace.node is None else workspace.node[1]
+        self.error(message, span, f"write `node: {node}`, or declare `{workspace.name}` outside of it")
 
     def _check_agent(self, name: str, span: Span, known: set[str]) -> None:
         if name != "*" and name not in known:
@@ -162,26 +198,37 @@ class Resolver:
         self.error(f"{what} workspace `{name}`", span, help)
         return None
 
-    def _named(self, name: str, span: Span, elsewhere: bool) -> str | None:
-        """Return the full path of a workspace that an agent uses, or None if it is not in this run."""
-        if self._is_of_organisation(name, span) or (elsewhere and not self._is_here(name)):
+    def _named(self, name: str, span: Span, node: WrittenName | None) -> str | None:
+        """Return the full path of a workspace that an agent uses, or None after reporting what is wrong.
+
+        A workspace of a given node need not be declared: agents may create it.
+        """
+        at = self.nodes.named(node)
+        if self._is_of_organisation(name, span):
             return None
-        return self._lookup(name, span)
+        if node is not None and not self._is_declared(name):
+            return name if name.startswith("/") else f"{_MAIN}/{name}"
+        path = self._lookup(name, span)
+        if path is not None and at is not None and not self._is_at(path, at):
+            actual = self._node_of(path) or self.nodes.first
+            help = f"write `{name}@{actual}`, or `node: {at}` in the workspace"
+            self.error(f"workspace `{name}` is not at node `{at}`", span, help)
+        return path
 
     def _join(self, wanted: JoinPart) -> str | None:
         """Return the workspace that an agent joins, or None if it is not in this run."""
-        path = self._named(wanted.workspace, wanted.span, wanted.elsewhere)
+        path = self._named(wanted.workspace, wanted.span, wanted.node)
         return None if path is None else self._shortest(path)
 
     def _focus(self, wanted: FocusPart) -> FocusSpec | None:
         """Return the artifact *wanted* with its workspace. Without a workspace, search all of them."""
         if wanted.workspace is None:
             return self._focus_anywhere(wanted)
-        path = self._named(wanted.workspace, wanted.span, wanted.elsewhere)
+        path = self._named(wanted.workspace, wanted.span, wanted.node)
         if path is None:
             return None
         known = self._declared(path) | _DEFAULT_NAMES
-        if wanted.artifact not in known:
+        if path in self._paths and wanted.artifact not in known:
             self.warn(
                 f"artifact `{wanted.artifact}` is not declared in workspace `{wanted.workspace}`",
                 wanted.span,
@@ -190,13 +237,15 @@ class Resolver:
         return FocusSpec(wanted.artifact, self._shortest(path), wanted.namespace)
 
     def _focus_anywhere(self, wanted: FocusPart) -> FocusSpec | None:
-        found = [path for path in self._paths if wanted.artifact in self._declared(path)]
+        at = self.nodes.named(wanted.node)
+        paths = [path for path in self._paths if at is None or self._is_at(path, at)]
+        found = [path for path in paths if wanted.artifact in self._declared(path)]
         if not found:
-            if not wanted.elsewhere:
-                every = {name for path in self._paths for name in self._declared(path)}
-                created = f"if an agent creates it, name its workspace, too: `workspace.{wanted.artifact}`"
-                help = suggestion(wanted.artifact, sorted(every), created)
-                self.error(f"unknown artifact `{wanted.artifact}`", wanted.span, help)
+            every = {name for path in paths for name in self._declared(path)}
+            created = f"if an agent creates it, name its workspace, too: `workspace.{wanted.artifact}`"
+            help = suggestion(wanted.artifact, sorted(every), created)
+            where = "" if at is None else f" at node `{at}`"
+            self.error(f"unknown artifact `{wanted.artifact}`{where}", wanted.span, help)
             return None
         if len(found) > 1:
             self.warn(
@@ -207,16 +256,16 @@ class Resolver:
         return FocusSpec(wanted.artifact, self._shortest(found[0]), wanted.namespace)
 
     def _declared(self, path: str) -> set[str]:
-        part = self._paths[path]
+        part = self._paths.get(path)
         return set() if part is None else {artifact.spec.name for artifact in part.artifacts}
 
-    def _is_here(self, name: str) -> bool:
+    def _is_declared(self, name: str) -> bool:
         return any(path.endswith(f"/{name.removeprefix('/')}") for path in self._paths)
 
     def _is_of_organisation(self, name: str, span: Span) -> bool:
         """Return whether *name* is an organisation, which is also a workspace in JaCaMo. Record it as unsupported."""
         topic = self._part.organisations.get(name)
-        if self._is_here(name) or topic is None:
+        if self._is_declared(name) or topic is None:
             return False
         found = Unsupported(topic, f"the workspace of `{name}`", span)
         if found not in self._part.unsupported:
@@ -239,6 +288,7 @@ class Resolver:
             beliefs=self._literals(agent.beliefs, "belief"),
             goals=self._literals(agent.goals, "goal"),
             agent_class=agent.agent_class,
+            node=self.nodes.named(agent.node),
             span=agent.span,
         )
         return [self._situated(replace(first, name=name), agent) for name in agent.instance_names()]
@@ -284,9 +334,11 @@ class Resolver:
                     if _means(written, agent)
                 ]
         join += [wanted.workspace for wanted in focus if wanted is not None]
+        joined = tuple(dict.fromkeys(name for name in join if name is not None))
         return replace(
             agent,
-            join=tuple(dict.fromkeys(name for name in join if name is not None)),
+            join=joined,
+            join_later=tuple(name for name in joined if name.startswith("/") and name not in self._paths),
             focus=tuple(dict.fromkeys(wanted for wanted in focus if wanted is not None)),
         )
 

@@ -231,15 +231,13 @@ def test_a_run_warns_once_for_each_kind_and_the_checker_reports_everything(write
         """)
     reading = read_project(path)
     assert {(each.severity, each.code) for each in reading.diagnostics} == {("warning", "no-effect")}
-    assert len(reading.diagnostics) == 18
+    assert len(reading.diagnostics) == 13
     told = [each.message for each in load_deployment(path).ignored]
-    assert len(told) == 8, told
+    assert len(told) == 7, told
     roles = "the role `cook` in `o.kitchen`, the role `waiter` in `o.hall` and the role `guest` in `o.hall`"
     assert told[0] == f"{roles} have no effect: roles in organisations are not supported (lines 2, 6)"
-    nodes = "5 nodes and hosts have no effect: all agents run in one process (lines 2, 4, 7, 17, 18)"
-    assert nodes in told
     assert "the platform `jade` has no effect: all agents run in one process" in told
-    assert load_deployment(path).agents[0].focus == ()
+    assert load_deployment(path).agents[0].focus == (FocusSpec("table", "/main/far"),)
 
 
 def test_a_mas2j_file_reports_what_has_no_effect(folder: Path, write: Write) -> None:
@@ -271,10 +269,11 @@ def test_a_mas2j_file_reports_what_has_no_effect(folder: Path, write: Write) -> 
     alice = deployment.agents[2]
     assert (alice.beliefs, alice.goals) == ("at(home)", 'start("a","b")')
     assert deployment.agents[3].source_path == folder / "src" / "agt" / "bob.asl"
+    assert [(node.name, node.address) for node in deployment.nodes] == [("h0", None), ("h1", None)]
+    assert [each.node for each in deployment.agents] == ["h1", "h1", None, None]
     assert [each.message for each in deployment.ignored] == [
         "the infrastructure `Jade` has no effect: all agents run in one process",
         "the environment `x.Env` has no effect: Java environments are not supported",
-        "`at h0` and `at` of agent `bob` have no effect: all agents run in one process (lines 6, 9)",
         "`executionControl` and `directives` have no effect: JaCaROS runs no Java code (lines 7, 20)",
         "the architecture `x.A` has no effect: JaCaROS runs no architectures of projects",
         "the belief base `x.Chain` has no effect: JaCaROS runs no belief bases of projects",

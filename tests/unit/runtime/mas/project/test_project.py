@@ -285,17 +285,15 @@ def test_unsupported_declarations_are_skipped_with_a_warning(load: Load) -> None
     deployment = load("""
         mas m {
           agent bob { roles: worker in o.g1 }
-          workspace w { artifact a : A  host: n1  debug }
+          workspace w { artifact a : A  debug }
           institution i : i.sai { workspaces: w }
           organisation o : org.xml { group g1 : team { players: bob worker } }
           platform: local(pool,4)
           uses package: lib "a:b:1"
-          node n1 running @ "h:1"
         }
         """)
     assert [warning.message for warning in deployment.ignored] == [
         "the role `worker` in `o.g1` has no effect: roles in organisations are not supported",
-        "`host` of workspace `w` and the node `n1` have no effect: all agents run in one process (lines 4, 9)",
         "`debug` of workspace `w` has no effect: JaCaROS opens no windows",
         "the institution `i` has no effect: institutions are not supported",
         "the organisation `o` has no effect: organisations are not supported",
