@@ -421,12 +421,17 @@ class WorkspaceTree:
         found = ((at.rpartition("/"), to) for at, to in self._links.items())
         return tuple((name, to) for (above, _, name), to in found if above == path)
 
-    def watch(self, path: str, watcher: Callable[[], None]) -> None:
-        """Call *watcher* whenever a workspace or link directly below a workspace is added or removed."""
-        self._watchers.setdefault(path, []).append(watcher)
+    def watch(self, path: str, watcher: Callable[[], None]) -> Callable[[], None]:
+        """Call *watcher* whenever a workspace or link directly below a workspace is added or removed.
+
+        Return a function that ends this.
+        """
+        watchers = self._watchers.setdefault(path, [])
+        watchers.append(watcher)
+        return lambda: watchers.remove(watcher)
 
     def _tell(self, path: str) -> None:
-        for watcher in self._watchers.get(path.rpartition("/")[0], ()):
+        for watcher in tuple(self._watchers.get(path.rpartition("/")[0], ())):
             watcher()
 
 

@@ -452,6 +452,7 @@ class Presence:
         self.environment, self.name, self.focused = environment, name, focused
         self.workspaces = JoinedWorkspaces(environment, home)
         self._own_actions = own_actions
+        self._when_left: list[Callable[[], None]] = []
 
     # ---- workspaces
 
@@ -473,9 +474,15 @@ class Presence:
 
     def leave(self) -> None:
         """End everything silently: waits for artifacts, too."""
+        while self._when_left:
+            self._when_left.pop()()
         for workspace in self.workspaces.joined():
             self.focused.end_all(workspace)
             self.workspaces.quit(workspace)
+
+    def when_left(self, callback: Callable[[], None]) -> None:
+        """Call *callback* when everything ends, see `leave`."""
+        self._when_left.append(callback)
 
     def changed(self, workspace: Workspace, joined: bool) -> None:
         """Note that a workspace was joined (True) or quit (False)."""

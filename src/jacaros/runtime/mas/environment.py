@@ -148,9 +148,12 @@ class RunEnvironment:
     def situate(self, presence: Presence, spec: AgentSpec) -> None:
         """Let an agent join and focus what the project declares.
 
-        An artifact that does not exist is focused as soon as it is created. Other errors are logged.
+        An artifact that does not exist is focused as soon as it is created, and a workspace of another node is joined as
+        soon as it appears. Other errors are logged.
         """
-        wishes: tuple[str | FocusSpec, ...] = (*spec.join, *spec.focus)
+        join = [each for each in spec.join if each not in spec.join_later]
+        focus = [each for each in spec.focus if each.workspace not in spec.join_later]
+        wishes: tuple[str | FocusSpec, ...] = (*join, *focus)
         for wanted in wishes:
             try:
                 if isinstance(wanted, str):
@@ -159,6 +162,16 @@ class RunEnvironment:
                     self._focus(presence, wanted)
             except OperationFailed as failure:
                 self._console.log(f"[{spec.name}] error: {failure.message}", "error")
+        if spec.join_later:
+            self._situate_later(presence, spec)
+
+    def _situate_later(self, presence: Presence, spec: AgentSpec) -> None:
+        from jacaros.runtime.mas.late_joins import LateJoin  # here: most projects have one node
+
+        for path in spec.join_later:
+            before = spec.join[: spec.join.index(path)]
+            listed = [each if each in spec.join_later else path_of(self.environment, each) for each in before]
+            LateJoin(presence, path, [each for each in spec.focus if each.workspace == path], listed)
 
     def _focus(self, presence: Presence, wanted: FocusSpec) -> None:
         known = wanted.workspace
