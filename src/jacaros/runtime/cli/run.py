@@ -12,6 +12,13 @@ from typing import Any
 import click
 
 from jacaros.agents.mind.mind import Mind
+from jacaros.runtime.cli.fleet_options import (
+    RunCommand,
+    as_member,
+    fleet_options,
+    given_arguments,
+    note_on_nodes,
+)
 from jacaros.runtime.cli.graph_options import (
     faults_option,
     graph_options,
@@ -24,7 +31,6 @@ from jacaros.runtime.cli.graph_options import (
 )
 from jacaros.runtime.cli.options import (
     PATH,
-    ViewCommand,
     ground_truth_option,
     option,
     settled,
@@ -52,13 +58,14 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 
 @click.command(
     "run",
-    cls=ViewCommand,
+    cls=RunCommand,
     epilog=examples(
         "jacaros run hello.asl",
         "jacaros run robot.asl --world house --view",
         "jacaros run house.jcm --clock fast --seed 1 --until-idle",
         "jacaros run robot.asl --mapping robot.yaml --ros ros2 --guard",
         "jacaros run house.jcm --record run.jsonl",
+        "jacaros run house.jcm --all-nodes",
     ),
 )
 @click.argument("file", type=PATH)
@@ -91,6 +98,7 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 )
 @graph_options
 @orphans_option
+@fleet_options
 @parameter_options
 @option(
     "--rosout/--no-rosout",
@@ -131,6 +139,8 @@ def command(
     params_file: tuple[Path, ...],
     quiet: bool,
     explained: tuple[str, ...],
+    node: str | None,
+    all_nodes: bool,
     **given: Any,
 ) -> int:
     """Run FILE: an agent program (.asl, or .py for an agent in Python) or a project (.mas2j, .jcm).
@@ -154,6 +164,9 @@ def command(
     )
     project = load_deployment(file)
     options, notes = settled(options, file.name, project.world)
+    if len(project.nodes) > 1 and node is None and not all_nodes:
+        notes.append(note_on_nodes(project.nodes))
+    project, options = as_member(file, project, options, node, all_nodes)
     if param or params_file:
         parameters = _parameters(project, param, params_file, options)
         simulated = parameters.pop("use_sim_time", False)
@@ -165,6 +178,9 @@ def command(
             clock = "ros"
         options = replace(options, parameters=parameters)
     options = replace(options, fast=clock == "fast", ros_clock=clock == "ros")
+    if all_nodes:
+        options.check()
+        return _run_nodes(project, outputs)
     console = StandardConsole(
         "warning" if quiet else "info", patience=FAST_PATIENCE if options.fast else PATIENCE
     )
@@ -176,6 +192,13 @@ def command(
         return code
     finally:
         _close(console, code)
+
+
+def _run_nodes(project: Deployment, outputs: RequestedOutputs) -> int:
+    from jacaros.runtime.cli.nodes import Nodes, arguments_of_nodes  # here: few runs start other processes
+
+    names = [each.name for each in project.nodes]
+    return Nodes(names, arguments_of_nodes(given_arguments(), outputs)).run()
 
 
 def _parameters(
@@ -228,7 +251,7 @@ def _launch(
 
 def report_idleness(mas: System) -> None:
     """Log once that the run has nothing left to do, if nothing from outside can change that."""
-    if mas.options.real_graph:
+    if mas.options.real_graph or mas.options.fleet is not None:
         return  # any message may wake an agent
 
     def idle() -> None:

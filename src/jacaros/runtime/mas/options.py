@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from jacaros.robots.ros.middleware import MIDDLEWARES, middleware
 from jacaros.robots.ros.open import GraphAddress
 from jacaros.runtime.errors import UsageError
+from jacaros.runtime.files.texts import help_line
 
 if TYPE_CHECKING:
     from jacaros.robots.ros.action_client import OrphanPolicy
@@ -36,6 +37,10 @@ class RunOptions(GraphAddress):
         guard: let a separate process stop the robot when this one cannot.
         restricted: agents accept no plans from others (``tellHow``), read and write no files, and create no Python objects;
             see docs/explanation/trust.md.
+        fleet: the fleet to join; None for none.
+        member: name of this system in the fleet. None: the name of the project.
+        fleet_keys: folder with the keys of this member. None: the fleet is limited to this computer.
+        fleet_routers: addresses of routers of the fleet, such as ``tls/lab.example:7447``.
         explain: keep the history of the run from its start, for `Mas.explain` and ``.why``.
         plain: run plans and rules as the language defines them, without generated code. The default is what
             ``JACAROS_PLAIN`` in the environment says.
@@ -57,6 +62,10 @@ class RunOptions(GraphAddress):
     mappings: Sequence[str | Path] = ()
     guard: bool = False
     restricted: bool = False
+    fleet: str | None = None
+    member: str | None = None
+    fleet_keys: Path | None = None
+    fleet_routers: Sequence[str] = ()
     explain: bool = False
     plain: bool = field(default_factory=lambda: os.environ.get("JACAROS_PLAIN", "0") not in ("", "0"))
 
@@ -92,9 +101,31 @@ class RunOptions(GraphAddress):
                 "--guard needs a real ROS graph (--ros ros1, ros2 or rosbridge): in the in-process graph, agents and "
                 "robot end together"
             )
+        self._check_fleet()
         given = (self.node_name, *(self._given(kind) for kind in MIDDLEWARES.values()))
         names = self.namespace or self.remap or self.parameters or any(each is not None for each in given)
         if self.real_graph or names:
             GraphAddress.check(self)  # with slots, super() refers to an older class
         if self.seconds is not None and self.seconds < 0:
             raise UsageError("expected a non-negative number of seconds as --for")
+
+    def _check_fleet(self) -> None:
+        if self.fleet is None:
+            named = {
+                "--member": self.member,
+                "--fleet-keys": self.fleet_keys,
+                "--router": self.fleet_routers or None,
+            }
+            for option, value in named.items():
+                if value is not None:
+                    raise UsageError(f"{option} needs --fleet NAME")
+            return
+        if self.fast:
+            raise UsageError(
+                f"--clock fast excludes the fleet `{self.fleet}`, whose members run in real time; use --clock real"
+            )
+        from importlib.util import find_spec  # here: few runs join a fleet
+
+        if find_spec("zenoh") is None:
+            help = help_line('pip install "jacaros[fleet]"')
+            raise UsageError(f"a fleet needs eclipse-zenoh, which is not installed\n{help}")

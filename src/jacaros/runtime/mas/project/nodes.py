@@ -65,7 +65,8 @@ class Nodes:
 def at_node(deployment: Deployment, name: str) -> Deployment:
     """Return the part of a deployment that runs at one of its nodes: the agents and workspaces that are there.
 
-    Agents join workspaces of other nodes later, at the path that these have here.
+    Agents join workspaces of other nodes later, at the path that these have here. The name is unique, because processes of
+    one name would end each other in a ROS graph.
     """
     first = deployment.nodes[0].name
     away = {
@@ -75,6 +76,7 @@ def at_node(deployment: Deployment, name: str) -> Deployment:
     }
     return replace(
         deployment,
+        name=f"{deployment.name}_{name}",
         agents=tuple(_seen_from(each, away) for each in deployment.agents if (each.node or first) == name),
         workspaces=tuple(each for each in deployment.workspaces if (each.node or first) == name),
     )

@@ -1,0 +1,88 @@
+"""Options of a run in a fleet: which part of a project this process runs, and which member of which fleet it is."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import click
+
+from jacaros.runtime.cli.options import PATH, ViewCommand, option, with_options
+from jacaros.runtime.cli.usage import listed, usage_error
+from jacaros.runtime.files.texts import suggestion
+from jacaros.runtime.mas.deployment import Deployment, NodeSpec
+from jacaros.runtime.mas.options import RunOptions
+
+fleet_options = with_options(
+    option("--node NAME", "Run only this node of the project, as a member of a fleet (see --fleet)."),
+    option("--all-nodes", "Run every node of the project, each in its own process on this computer."),
+    option(
+        "--fleet NAME",
+        "Fleet to join: systems that exchange messages and share workspaces (default with --node and --all-nodes: the "
+        "name of the project).",
+    ),
+    option("--member NAME", "Name of this system in the fleet (default: that of the node or the file)."),
+    option(
+        "--fleet-keys DIR",
+        "Folder with the keys of this member. Without keys, a fleet is limited to this computer.",
+        PATH,
+    ),
+    option(
+        "--router ENDPOINT...",
+        "Router of the fleet, such as tls/lab.example:7447, for networks without multicast. Repeatable.",
+        name="fleet_routers",
+    ),
+)
+"""Add the options of a fleet; the command's class must be `RunCommand`."""
+_ARGUMENTS = f"{__name__}.arguments"
+
+
+class RunCommand(ViewCommand):
+    """A command that keeps its arguments, for the processes of nodes."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        ctx.meta[_ARGUMENTS] = tuple(args)
+        return super().parse_args(ctx, args)
+
+
+def given_arguments() -> Sequence[str]:
+    """Return the arguments of the running `RunCommand`."""
+    arguments: Sequence[str] = click.get_current_context().meta[_ARGUMENTS]
+    return arguments
+
+
+def as_member(
+    file: Path, project: Deployment, options: RunOptions, node: str | None, all_nodes: bool
+) -> tuple[Deployment, RunOptions]:
+    """Return the part of a project that runs at *node*, and the options with the defaults of a fleet.
+
+    Raises:
+        UsageError: the project has no such node, or the options exclude each other.
+    """
+    if node is None and not all_nodes:
+        member = file.stem if options.fleet is not None else None
+        return project, replace(options, member=options.member or member)
+    if node is not None and all_nodes:
+        raise usage_error("--node excludes --all-nodes", f"jacaros run {file} --node {node}")
+    if options.member is not None:
+        raise usage_error("--member excludes --node and --all-nodes", "a node is the member of its name")
+    options = replace(options, fleet=options.fleet or project.name, member=node)
+    names = [each.name for each in project.nodes]
+    if not names:
+        raise usage_error(f"`{file}` declares no nodes", "add a section to the project: `node lab`")
+    if node is None:
+        return project, options
+    if node not in names:
+        known = f"nodes of `{file}`: {listed(names)}"
+        raise usage_error(f"unknown node `{node}`", suggestion(node, names, known))
+    from jacaros.runtime.mas.project.nodes import at_node  # here: most projects have no nodes
+
+    return at_node(project, node), options
+
+
+def note_on_nodes(nodes: Sequence[NodeSpec]) -> str:
+    """Return the note for a run that ignores the nodes of its project."""
+    names = [f"`{each.name}`" for each in nodes]
+    return (
+        f"note: the nodes {listed(names)} run in one process; --all-nodes runs each in its own, and --node "
+        f"{nodes[0].name} runs one of them"
+    )
