@@ -31,10 +31,22 @@ class SimulatedNetwork:
         return SimulatedCarrier(self)
 
     def cut(self, one: str, other: str, noticed: bool = True) -> None:
-        """Cut the link between two members."""
+        """Cut the link between two members. A cut that is not *noticed* shows by their silence only."""
         self._cut.add(frozenset({one, other}))
         if noticed:
             self._tell_both(one, other, False)
+
+    def notice_loss(self, me: str, other: str, seconds: float) -> None:
+        """Let one member believe for a while that another one is gone, although it is not, or not yet."""
+        pairs = [(a, b) for a in self._open for b in self._open if (a.name, b.name) == (me, other)]
+        for here, it in pairs:
+            self._open[here].present(it, False)
+            self._later(seconds, here, it, True)
+
+    def kill(self, name: str) -> None:
+        """End a member without a word."""
+        for each in [each for each in self._open if each.name == name]:
+            self.left(each)
 
     def heal(self, one: str, other: str) -> None:
         """Heal it."""
@@ -50,8 +62,7 @@ class SimulatedNetwork:
 
     def _later(self, delay: float, me: MemberId, it: MemberId, present: bool) -> None:
         def tell() -> None:
-            is_cut = frozenset({me.name, it.name}) in self._cut
-            if me in self._open and present == (it in self._open and not is_cut):
+            if me in self._open and present == (it in self._open and not self._is_cut(me, it)):
                 self._open[me].present(it, present)
 
         self.clock.call_later(delay, tell)
@@ -59,9 +70,13 @@ class SimulatedNetwork:
     def joined(self, me: MemberId, listener: Listener) -> None:
         """Let a member in."""
         for it, others in self._open.items():
-            others.present(me, True)
-            listener.present(it, True)
+            if not self._is_cut(me, it):
+                others.present(me, True)
+                listener.present(it, True)
         self._open[me] = listener
+
+    def _is_cut(self, one: MemberId, other: MemberId) -> bool:
+        return frozenset({one.name, other.name}) in self._cut
 
     def left(self, me: MemberId) -> None:
         """Hear that a member has left, or was killed."""
@@ -71,6 +86,8 @@ class SimulatedNetwork:
 
     def carry(self, sender: MemberId, to: MemberId, datagram: bytes) -> None:
         """Carry a datagram, or do not."""
+        if sender not in self._open:
+            return  # it was killed
         copies = 1 + (self.random.random() < self.doubling)
         for _ in range(copies):
             if self.random.random() >= self.loss:
@@ -79,7 +96,7 @@ class SimulatedNetwork:
 
     def _arrive(self, sender: MemberId, to: MemberId, datagram: bytes) -> None:
         listener = self._open.get(to)
-        if listener is not None and frozenset({sender.name, to.name}) not in self._cut:
+        if listener is not None and not self._is_cut(sender, to):
             listener.received(sender, datagram)
 
 

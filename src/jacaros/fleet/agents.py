@@ -48,12 +48,17 @@ class FleetAgents:
         member: name of this member.
         find_own: returns the mailbox of an agent of this member, or None.
         report: writes a warning into the log.
+        renamed: called with the bare name of agents that may be called otherwise from now on.
     """
 
     def __init__(
-        self, member: str, find_own: Callable[[str], Mailbox | None], report: Callable[[str], None]
+        self,
+        member: str,
+        find_own: Callable[[str], Mailbox | None],
+        report: Callable[[str], None],
+        renamed: Callable[[str], None],
     ) -> None:
-        self._member, self._find_own, self._report = member, find_own, report
+        self._member, self._find_own, self._report, self._renamed = member, find_own, report, renamed
         self._posts: dict[str, Post] = {}
         self._holders: dict[str, dict[str, _RemoteMailbox]] = {}
         self._reported: set[tuple[str, str]] = set()
@@ -102,8 +107,13 @@ class FleetAgents:
             members.pop(member, None)
             if not members:
                 self._holders.pop(name, None)
+            elif len(members) == 1:
+                self._renamed(name)
         elif member in self._posts:
-            self._holders.setdefault(name, {})[member] = _RemoteMailbox(self._posts[member], name)
+            members = self._holders.setdefault(name, {})
+            members[member] = _RemoteMailbox(self._posts[member], name)
+            if len(members) > 1:
+                self._renamed(name)
             self.check(name)
 
     def check(self, name: str) -> None:

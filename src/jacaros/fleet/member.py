@@ -28,7 +28,7 @@ MEMORY = 60.0
 GOODBYE = 0.5
 """Seconds for which the end of a member waits until the others have what it said last."""
 _DEPARTED = 100
-"""Runs that have ended whose last datagrams are ignored."""
+"""Runs that have ended whose last datagrams are ignored, and others that may return."""
 _MOST = 1000
 """Other members, and different warnings, at most."""
 
@@ -68,16 +68,17 @@ class Member:
         self._reported: set[str] = set()
         self._timer: Timer | None = None
         self._forgetting: dict[MemberId, Timer] = {}
+        self._former: dict[MemberId, Peer] = {}
         self._departed: deque[MemberId] = deque(maxlen=_DEPARTED)
         self._rival: MemberId | None = None
         self._names = ArtifactNames(me.incarnation, self._path_of)
-        self._agents = FleetAgents(me.name, system.directory.find, self._warn)
+        self._agents = FleetAgents(me.name, system.directory.find, self._warn, self._renamed)
         self._announced = Announced(system, self._names, self._tell)
         self._ends: list[Callable[[], object]] = []
 
-    def _warn(self, text: str) -> None:
-        if text not in self._reported and len(self._reported) < _MOST:
-            self._reported.add(text)
+    def _warn(self, text: str, about: str = "") -> None:
+        if (about or text) not in self._reported and len(self._reported) < _MOST:
+            self._reported.add(about or text)
             self._system.console.log(f"[fleet] {text}", "warning")
 
     def _path_of(self, run: str, workspace: str) -> str:
@@ -131,8 +132,14 @@ class Member:
         await self._carrier.close()
 
     def _agent_news(self, name: str, present: bool) -> None:
-        if present and name != DIRECTORY_NAME:
-            self._agents.check(name)
+        if name != DIRECTORY_NAME:
+            self._renamed(name)
+            if present:
+                self._agents.check(name)
+
+    def _renamed(self, name: str) -> None:
+        for peer in self.peers.values():
+            peer.renamed(name)
 
     def _tell(self, said: object) -> None:
         for peer in self.peers.values():
@@ -168,7 +175,7 @@ class Member:
 
     def refused(self, sender: str, why: str) -> None:
         """Report something that is no datagram of a member, once for each sender."""
-        self._warn(f"ignored from {sender}: {why}")
+        self._warn(f"ignored from {sender}: {why}", sender)
 
     def present(self, member: MemberId, is_present: bool) -> None:
         """Hear that another member is there, or is not."""
@@ -197,10 +204,27 @@ class Member:
         if member in self._departed or len(self.peers) >= _MOST:
             return None
         if known is not None:
-            if known.is_there or known.id.incarnation > member.incarnation:
+            if known.is_there:
                 return None  # if it is another member of this name, it tells so itself
-            self._end(known)
-        peer = self.peers[member.name] = Peer(
+            self._replace(known)
+        # A channel knows the numbers of both sides, so a run that returns after all needs its former one.
+        peer = self.peers[member.name] = (
+            self._former.pop(member) if member in self._former else self._new_peer(member)
+        )
+        return peer
+
+    def _replace(self, lost: Peer) -> None:
+        """Make room for another run of a lost member."""
+        self._stop_waiting(lost)
+        self._former[lost.id] = lost
+        if len(self._former) > _DEPARTED:
+            oldest = next(iter(self._former))
+            del self._former[oldest]
+            self._departed.append(oldest)
+        lost.forget()
+
+    def _new_peer(self, member: MemberId) -> Peer:
+        return Peer(
             member,
             self._system,
             self._announced,
@@ -210,7 +234,6 @@ class Member:
             self._rights.of(member.name),
             self._changed,
         )
-        return peer
 
     def _meet_rival(self, member: MemberId) -> None:
         """Another run has the name of this one: the older one keeps it."""
@@ -225,9 +248,7 @@ class Member:
         self._system.console.log(
             f"[fleet] {peer.name} {_STATES[state]}", "warning" if state == "lost" else "info"
         )
-        waiting = self._forgetting.pop(peer.id, None)
-        if waiting is not None:
-            waiting.cancel()
+        self._stop_waiting(peer)
         if state == "lost":
             self._forgetting[peer.id] = self._system.clock.call_later(MEMORY, peer.forget)
         elif state == "left":
@@ -235,11 +256,14 @@ class Member:
         for watcher in tuple(self.watchers):
             watcher(peer.name, state)
 
-    def _end(self, peer: Peer) -> None:
-        """End with a run of another member that will not return."""
+    def _stop_waiting(self, peer: Peer) -> None:
         waiting = self._forgetting.pop(peer.id, None)
         if waiting is not None:
             waiting.cancel()
+
+    def _end(self, peer: Peer) -> None:
+        """End with a run of another member that will not return."""
+        self._stop_waiting(peer)
         if self.peers.get(peer.name) is peer:
             del self.peers[peer.name]
         self._departed.append(peer.id)

@@ -4,8 +4,6 @@ from collections.abc import Callable, Collection
 from functools import partial
 from typing import Any
 
-import msgspec
-
 from jacaros.agents.mind.state.act import SpeechAct
 from jacaros.agents.mind.state.plan import Failure
 from jacaros.agents.terms.values import String, atom, functor
@@ -25,6 +23,8 @@ from jacaros.runtime.mas.system import System
 
 FULL = 8 << 20
 """Bytes under way to a member beyond which no message is accepted for it."""
+_REPORTS = 100
+"""Different warnings about a member that are written at most."""
 _QUESTIONS = 10_000
 """Questions to a member whose answers are awaited; older ones get no report of its loss."""
 _ERROR, _ERROR_MSG = functor("error", 1), functor("error_msg", 1)
@@ -74,6 +74,7 @@ class Peer:
         self._epoch = 1
         self._its_epoch = 0
         self._state = ""
+        self._is_known = False
         self._reported: set[str] = set()
         self._asked: dict[str, SpeechAct] = {}
         self._services: dict[tuple[str, str], str] = {}
@@ -87,12 +88,12 @@ class Peer:
         self._handlers: dict[type, Callable[[Any], None]] = {
             protocol.Here: self._on_here,
             protocol.Bye: lambda _: self.leave(),
-            protocol.AgentNews: lambda said: self._agents.know(said.name, self.name, said.present),
-            protocol.ServiceNews: self._on_service,
+            protocol.AgentNews: self._if_known(self._on_agent),
+            protocol.ServiceNews: self._if_known(self._on_service),
             protocol.Message: self._on_message,
             protocol.Returned: self._on_returned,
-            protocol.WorkspaceNews: self._on_workspace,
-            protocol.ArtifactNews: self._on_artifact,
+            protocol.WorkspaceNews: self._if_known(self._on_workspace),
+            protocol.ArtifactNews: self._if_known(self._on_artifact),
             protocol.Execute: partial(self._allowed, OPERATE, self._served.on_execute),
             protocol.Create: partial(self._allowed, OPERATE, self._served.on_create),
             protocol.CreateWorkspace: partial(self._allowed, OPERATE, self._served.on_create_workspace),
@@ -125,10 +126,10 @@ class Peer:
         if self.is_there:
             self.channel.send(protocol.write(said))
 
-    def report(self, text: str) -> None:
-        """Write a warning about it into the log, once."""
-        if text not in self._reported:
-            self._reported.add(text)
+    def report(self, text: str, about: str = "") -> None:
+        """Write a warning about it into the log, once; or once *about* something."""
+        if (about or text) not in self._reported and len(self._reported) < _REPORTS:
+            self._reported.add(about or text)
             self._system.console.log(f"[fleet] {self.name}: {text}", "warning")
 
     def heard(self, packet: Packet) -> None:
@@ -142,10 +143,11 @@ class Peer:
             handler = self._handlers.get(type(said))
             if handler is not None:
                 handler(said)
-        except (msgspec.MsgspecError, ValueError, TypeError, LookupError, RecursionError) as error:
-            self.report(f"dropped something that is no valid message: {error}")
         except OperationFailed as failure:
             self.report(failure.message)
+        except Exception as error:  # whatever it says, nothing here ends because of it
+            kind = type(error).__name__
+            self.report(f"dropped something that is no valid message: {kind}: {error}", "invalid")
 
     def _allowed(self, right: str, handler: Callable[[Any], None], asked: Any) -> None:
         """Do what it asks for if it may."""
@@ -183,6 +185,7 @@ class Peer:
 
     def _break(self) -> None:
         """End everything that is under way between both."""
+        self._is_known = False
         self._served.lost()
         self._remote.lose()
         self._calls.lost()
@@ -206,9 +209,11 @@ class Peer:
         if not self.is_there:
             return
         known, self._its_epoch = self._its_epoch, said.epoch
-        if known not in (0, said.epoch) and said.knows == self._epoch:
-            self._break()  # it lost this member, which has not noticed, and with it what was begun here
-            self.say(self._announced.picture(self._epoch, self._its_epoch))
+        if known != said.epoch:
+            self._break()  # it lost this member, even if that has not noticed, and what was begun on both sides
+            if said.knows == self._epoch:
+                self.say(self._announced.picture(self._epoch, self._its_epoch))
+        self._is_known = True
         self._agents.came(self.name, self)
         for name in said.agents:
             self._agents.know(name, self.name, True)
@@ -230,6 +235,22 @@ class Peer:
         if state != self._state:
             self._state = state
             self._changed(self, state)
+
+    def _if_known(self, handler: Callable[[Any], None]) -> Callable[[Any], None]:
+        """Ignore changes of a picture that is not known: the whole one follows."""
+        return lambda said: handler(said) if self._is_known else None
+
+    def _on_agent(self, said: protocol.AgentNews) -> None:
+        self._agents.know(said.name, self.name, said.present)
+
+    def renamed(self, name: str) -> None:
+        """Its agent with this bare name, if there is one, may be called otherwise here."""
+        called, services = self._agents.called(name, self.name), self._system.services
+        for (agent, service), former in list(self._services.items()):
+            if agent == name and former != called:
+                services.deregister(former, service)
+                self._services[agent, service] = called
+                services.register(called, service)
 
     def _on_service(self, said: protocol.ServiceNews) -> None:
         key = (said.agent, said.service)
@@ -307,11 +328,11 @@ class Peer:
     def _on_message(self, said: protocol.Message) -> None:
         reason = self._deliver(said)
         if reason:
-            self.say(
-                protocol.Returned(
-                    said.id, said.sender, said.receiver, said.performative, said.content, reason
-                )
+            returned = protocol.Returned(
+                said.id, said.sender, said.receiver, said.performative, said.content, reason
             )
+            # Kept if it is lost now: nothing else tells the sender.
+            self.channel.send(protocol.write(returned), lambda: None)
 
     def _deliver(self, said: protocol.Message) -> str:
         """Put a message into the mailbox of its receiver. Return why that is impossible, or an empty text."""
@@ -331,7 +352,8 @@ class Peer:
             return "mailbox_full"
 
     def _on_returned(self, said: protocol.Returned) -> None:
-        self._asked.pop(said.id, None)
+        if self._asked.pop(said.id, None) is None and said.performative.startswith(_ASKING):
+            return  # the asker has been told that the member was lost
         receiver, content = self._agents.called(said.receiver, self.name), self._wire.to_term(said.content)
         message = SpeechAct(said.performative, said.sender, receiver, content, said.id)
         self._system.mailboxes.returned(message, said.reason)

@@ -82,6 +82,7 @@ class Calls:
         """End all calls: the other member is gone, and what became of them is unknown."""
         waiting, self._waiting = self._waiting, {}
         for call, done in waiting.items():
+            self._line.say(protocol.Handle(call, "cancel"))  # if it was only this member that was not heard
             done(protocol.Ended(call, False, *gone(self._member), [], None))
 
 
@@ -93,8 +94,8 @@ def gone(member: str) -> tuple[str, Any]:
 class _Focus:
     """One observer of one artifact, and what it knows."""
 
-    def __init__(self, artifact: ArtifactId, observer: Observer) -> None:
-        self.artifact, self.observer = artifact, observer
+    def __init__(self, number: int, artifact: ArtifactId, observer: Observer) -> None:
+        self.number, self.artifact, self.observer = number, artifact, observer
         self.properties: dict[int, ObservableProperty] = {}
 
     def clear(self) -> None:
@@ -124,38 +125,37 @@ class RemoteWorkspaces:
         self.present = True
         self.focuses: dict[tuple[ArtifactId, Observer], _Focus] = {}
         self._by_number: dict[int, _Focus] = {}
+        self._count = 0
 
     # ---- focuses
 
     def focus(self, artifact: ArtifactId, observer: Observer, on_done: OnOutcome) -> None:
         """Begin to observe an artifact."""
-        focus = self.focuses.get((artifact, observer))
-        if focus is None:
-            focus = self.focuses[artifact, observer] = _Focus(artifact, observer)
-            self._by_number[id(focus)] = focus
+        known = self.focuses.get((artifact, observer))
+        focus = known or self._begin(artifact, observer)
 
         def done(ended: protocol.Ended) -> None:
-            if not ended.ok and self.present:
-                self._drop(artifact, observer)
+            if not ended.ok and known is None and self.focuses.get((artifact, observer)) is focus:
+                self.stop_focus(artifact, observer)
             on_done(self.outcome(ended))
 
         self.calls.ask(partial(self._focus, focus), done)
 
-    def _focus(self, focus: _Focus, call: int) -> protocol.Focus:
-        return protocol.Focus(call, self.names.number(focus.artifact), id(focus), focus.observer.agent)
-
-    def _drop(self, artifact: ArtifactId, observer: Observer) -> _Focus | None:
-        focus = self.focuses.pop((artifact, observer), None)
-        if focus is not None:
-            del self._by_number[id(focus)]
+    def _begin(self, artifact: ArtifactId, observer: Observer) -> _Focus:
+        self._count += 1
+        focus = _Focus(self._count, artifact, observer)
+        self.focuses[artifact, observer] = self._by_number[focus.number] = focus
         return focus
+
+    def _focus(self, focus: _Focus, call: int) -> protocol.Focus:
+        return protocol.Focus(call, self.names.number(focus.artifact), focus.number, focus.observer.agent)
 
     def stop_focus(self, artifact: ArtifactId, observer: Observer) -> None:
         """End it."""
-        focus = self._drop(artifact, observer)
+        focus = self.focuses.pop((artifact, observer), None)
         if focus is not None:
-            if self.present:
-                self.line.say(protocol.StopFocus(self.names.number(artifact), id(focus)))
+            del self._by_number[focus.number]
+            self.line.say(protocol.StopFocus(self.names.number(artifact), focus.number))
             focus.clear()
 
     def observed(self, seen: protocol.Observed) -> None:
@@ -198,9 +198,7 @@ class RemoteWorkspaces:
     def forget(self, artifact: ArtifactId) -> None:
         """Forget an artifact that is gone."""
         for of, observer in [each for each in self.focuses if each[0] is artifact]:
-            focus = self._drop(of, observer)
-            if focus is not None:
-                focus.clear()
+            self.stop_focus(of, observer)
 
     # ---- values
 

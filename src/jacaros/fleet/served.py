@@ -68,6 +68,7 @@ class _Watching:
 
     def flush(self) -> None:
         """Send what has been put together."""
+        self._served.late.pop(self, None)
         if not (self._whole or self._properties or self._removed or self._signals):
             return
         data = self._served.data
@@ -118,10 +119,9 @@ class Served:
             return [LIST, *(self.data(each, what) for each in value)]
 
     def drained(self) -> None:
-        """Send what has waited: there is room again."""
-        late, self.late = self.late, {}
-        for each in late:
-            each.flush()
+        """Send what has waited, as far as there is room."""
+        while self.late and not self.line.is_behind:
+            next(iter(self.late)).flush()
 
     def lost(self) -> None:
         """The other member is gone: end its operations and focuses."""
@@ -145,9 +145,9 @@ class Served:
         if artifact is None:
             self._fail(asked.call, _gone(asked.artifact))
             return
-        self._begun.add(asked.call)
         outs: list[Out] = []
         arguments = tuple(self._wire.to_value(asked.arguments, outs))
+        self._begun.add(asked.call)
 
         def done(outcome: OperationOutcome) -> None:
             self._end(asked.call, outcome, outs)
@@ -233,9 +233,14 @@ class Served:
             if (former := self._watching.pop(key, None)) is not None:
                 workspace.stop_focus(artifact, former)
                 self.late.pop(former, None)
-            watching = self._watching[key] = _Watching(self, asked.observer, asked.agent, artifact)
-            workspace.focus(artifact, watching, done)
-            watching.begin()
+            watching = _Watching(self, asked.observer, asked.agent, artifact)
+
+            def begun(outcome: OperationOutcome) -> None:
+                watching.begin()
+                done(outcome)
+
+            workspace.focus(artifact, watching, begun)
+            self._watching[key] = watching
 
         self._on_artifact(asked.call, asked.artifact, focus)
 
