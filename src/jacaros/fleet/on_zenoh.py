@@ -12,8 +12,7 @@ from typing import Any
 import zenoh
 
 from jacaros.fleet.carrier import Listener, MemberId
-from jacaros.fleet.network import Network, session_config
-from jacaros.runtime.errors import UsageError
+from jacaros.fleet.network import Network, open_session, session_config
 
 _ROOT = "jacaros"
 _MOST = 100_000
@@ -46,10 +45,7 @@ class ZenohCarrier:
             self._arrive(kind, sample)
 
     def _open(self) -> list[tuple[str, Any]]:
-        try:
-            session = self._session = zenoh.open(session_config(self._network))
-        except zenoh.ZError as error:
-            raise UsageError(f"cannot join the fleet {self._network.fleet}: {error}") from None
+        session = self._session = open_session(session_config(self._network))
         me = self._me
         self._declared = [
             session.declare_subscriber(

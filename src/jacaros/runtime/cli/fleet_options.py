@@ -1,6 +1,6 @@
 """Options of a run in a fleet: which part of a project this process runs, and which member of which fleet it is."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,6 +11,7 @@ from jacaros.runtime.cli.usage import listed, usage_error
 from jacaros.runtime.files.texts import suggestion
 from jacaros.runtime.mas.deployment import Deployment, NodeSpec
 from jacaros.runtime.mas.options import RunOptions
+from jacaros.runtime.mas.system import Join
 
 fleet_options = with_options(
     option("--node NAME", "Run only this node of the project, as a member of a fleet (see --fleet)."),
@@ -30,6 +31,12 @@ fleet_options = with_options(
         "--router ENDPOINT...",
         "Router of the fleet, such as tls/lab.example:7447, for networks without multicast. Repeatable.",
         name="fleet_routers",
+    ),
+    option(
+        "--fleet-allow MEMBER=RIGHTS...",
+        "What a member (`*`: any other) may do here: send, see, operate, tell_how, stop (default: the first three). "
+        "Repeatable.",
+        name="fleet_allow",
     ),
 )
 """Add the options of a fleet; the command's class must be `RunCommand`."""
@@ -77,6 +84,28 @@ def as_member(
     from jacaros.runtime.mas.project.nodes import at_node  # here: most projects have no nodes
 
     return at_node(project, node), options
+
+
+def join_of(options: RunOptions, log: Callable[[str], None]) -> Join | None:
+    """Return the function that joins a run to its fleet. None: it is in no fleet.
+
+    Raises:
+        UsageError: names, keys or rights are invalid.
+    """
+    if options.fleet is None or options.member is None:
+        return None
+    options.check()
+    from jacaros.fleet.joining import joining  # here: few runs are in a fleet
+    from jacaros.fleet.keys import find_keys
+    from jacaros.fleet.network import Network
+    from jacaros.fleet.on_zenoh import ZenohCarrier
+    from jacaros.fleet.rights import read_rights
+
+    keys = options.fleet_keys or find_keys(options.fleet, options.member)
+    network = Network(options.fleet, options.member, keys, tuple(options.fleet_routers))
+    reach = "on this computer alone" if keys is None else f"with the keys in {keys}"
+    log(f"[fleet] {network.member} in the fleet {network.fleet}, {reach}")
+    return joining(ZenohCarrier(network), network.member, read_rights(options.fleet_allow), network.lease)
 
 
 def note_on_nodes(nodes: Sequence[NodeSpec]) -> str:

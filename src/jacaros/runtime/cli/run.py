@@ -17,6 +17,7 @@ from jacaros.runtime.cli.fleet_options import (
     as_member,
     fleet_options,
     given_arguments,
+    join_of,
     note_on_nodes,
 )
 from jacaros.runtime.cli.graph_options import (
@@ -234,9 +235,10 @@ def _launch(
         if not options.until_idle and options.seconds is None:
             report_idleness(mas)
 
+    join = join_of(options, console.log)
     if not outputs.any:
         with console.with_prints():
-            return launch(project, options, console, begin)
+            return launch(project, options, console, begin, join=join)
     # Imported here: numpy, rich and the simulator are needed only for views and recordings.
     from jacaros.runtime.cli.watching import Watching
 
@@ -245,7 +247,7 @@ def _launch(
         watching.begin(mas)
 
     with Watching(console, outputs) as watching, console.with_prints():
-        code = launch(project, options, watching, begin_watched)
+        code = launch(project, options, watching, begin_watched, join=join)
     return code or int(watching.incomplete)
 
 

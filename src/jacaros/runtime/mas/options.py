@@ -41,6 +41,7 @@ class RunOptions(GraphAddress):
         member: name of this system in the fleet. None: the name of the project.
         fleet_keys: folder with the keys of this member. None: the fleet is limited to this computer.
         fleet_routers: addresses of routers of the fleet, such as ``tls/lab.example:7447``.
+        fleet_allow: what other members may do here, such as ``lab=send,see``.
         explain: keep the history of the run from its start, for `Mas.explain` and ``.why``.
         plain: run plans and rules as the language defines them, without generated code. The default is what
             ``JACAROS_PLAIN`` in the environment says.
@@ -66,6 +67,7 @@ class RunOptions(GraphAddress):
     member: str | None = None
     fleet_keys: Path | None = None
     fleet_routers: Sequence[str] = ()
+    fleet_allow: Sequence[str] = ()
     explain: bool = False
     plain: bool = field(default_factory=lambda: os.environ.get("JACAROS_PLAIN", "0") not in ("", "0"))
 
@@ -115,6 +117,7 @@ class RunOptions(GraphAddress):
                 "--member": self.member,
                 "--fleet-keys": self.fleet_keys,
                 "--router": self.fleet_routers or None,
+                "--fleet-allow": self.fleet_allow or None,
             }
             for option, value in named.items():
                 if value is not None:
