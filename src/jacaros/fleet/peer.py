@@ -222,12 +222,11 @@ class Peer:
         present = {path for path, _ in said.workspaces}
         for path in [each for each in self._workspaces if each not in present]:
             self._on_workspace(protocol.WorkspaceNews(path, False))
-        self._remote.present = True
+        self._remote.find()  # first: agents focus artifacts of new workspaces themselves
         for path, artifacts in said.workspaces:
             self._on_workspace(protocol.WorkspaceNews(path, True))
             if path in self._workspaces:
                 self._workspaces[path][0].told_all(artifacts)
-        self._remote.find()
         self.picture = said
         self._become("joined")
 
