@@ -140,6 +140,7 @@ def parts() -> list[Part]:
             (*PYTEST, "tests/integration", "tests/compatibility", "-m", "not ros1 and not ros2", *ONCE_MORE),
             budget=60,
         ),
+        Part("fleet", (*PYTEST, "tests/fleet", *ONCE_MORE), "waiting", budget=200),
         Part("scenarios", (*PYTEST, "tests/scenarios", "-m", "not ros1 and not ros2"), budget=165),
         Part("experiment", (PYTHON, "experiment/run.py", "--quick"), budget=150, quiet_minutes=30),
         Part("faults", (*PYTEST, "tests/faults"), budget=10),
