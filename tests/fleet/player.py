@@ -14,6 +14,7 @@ from typing import Any
 import zenoh
 
 from jacaros.fleet.network import Network, open_session, router_config, session_config
+from jacaros.runtime.errors import JacarosError
 
 
 def config(
@@ -76,6 +77,10 @@ class Player:
         )
         self.declared.append(sees)
 
+    def delete(self, key: str) -> None:
+        """Publish a deletion."""
+        self.session.delete(key)
+
     def query(self, key: str) -> None:
         """Print answers of others: not those of the session itself."""
         own = f"@/{self.session.zid()}/"
@@ -85,17 +90,20 @@ class Player:
 
     def links(self) -> None:
         """Print the names in the certificates at the other ends."""
-        say("links", *sorted(f"{link.auth_identifier}" for link in self.session.info.links()))
+        say("links", *sorted({f"{link.auth_identifier}" for link in self.session.info.links()}))
 
 
 def main() -> None:
     """Open the session, and follow the input until it ends."""
     given = json.loads(sys.argv[1])
-    session = open_session(
-        config(
-            given.get("network"), given.get("plain", {}), given.get("router", ""), given.get("changes", {})
-        )
+    made = config(
+        given.get("network"), given.get("plain", {}), given.get("router", ""), given.get("changes", {})
     )
+    try:
+        session = open_session(made)
+    except JacarosError as error:
+        say("refused", error)
+        return
     player = Player(session)
     say("open")
     for line in sys.stdin:

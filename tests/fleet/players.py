@@ -7,7 +7,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
@@ -19,11 +19,13 @@ _SCRIPT = Path(__file__).with_name("player.py")
 
 
 class Player:
-    """A session of Zenoh in another process."""
+    """A session of Zenoh in another process, or a command of `jacaros`."""
 
-    def __init__(self, **given: Any) -> None:
+    def __init__(self, command: Sequence[str] = (), **given: Any) -> None:
+        words = ["-m", "jacaros", *command] if command else [str(_SCRIPT), json.dumps(given, default=str)]
         self.process = subprocess.Popen(
-            [sys.executable, str(_SCRIPT), json.dumps(given, default=str)],
+            [sys.executable, *words],
+            stderr=subprocess.STDOUT,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
@@ -81,6 +83,10 @@ class Player:
     def kill(self) -> None:
         """End the process without any chance to say so."""
         self.process.kill()
+
+    def interrupt(self) -> None:
+        """Press Ctrl+C."""
+        self.process.send_signal(signal.SIGINT)
 
     def freeze(self) -> None:
         """Stop the process as if its computer hung."""

@@ -6,6 +6,7 @@ alone, and everything goes through it: Zenoh's routers do not forward between pe
 """
 
 import json
+import re
 import socket
 import zlib
 from dataclasses import dataclass
@@ -102,6 +103,12 @@ def router_config(network: Network, address: str | None = None) -> "zenoh.Config
     return _config("router", network, keys, [_endpoint(address, keys is not None)], _endpoints(network))
 
 
+def address_of(router: "zenoh.Config") -> tuple[str, str]:
+    """Return host and port on which the router of a configuration listens."""
+    host, _, port = _shown(json.loads(router.get_json("listen/endpoints"))[0]).rpartition(":")
+    return host, port
+
+
 def open_session(config: "zenoh.Config") -> "zenoh.Session":
     """Open a session. Blocks for up to half a second, with routers for three seconds.
 
@@ -116,10 +123,10 @@ def open_session(config: "zenoh.Config") -> "zenoh.Session":
     try:
         return zenoh.open(config)
     except zenoh.ZError as error:
-        why = printable(str(error))
-    routers = json.loads(config.get_json("connect/endpoints"))
+        why = _reason(str(error))
     if json.loads(config.get_json("mode")) == "client":
-        raise NoRouter(f"no router answers at {' or '.join(map(_shown, routers))}: {why}")
+        routers = [_shown(each) for each in json.loads(config.get_json("connect/endpoints"))]
+        raise NoRouter("no router: " + "; ".join(f"{each}: {_silence(each)}" for each in routers))
     where = " and ".join(map(_shown, json.loads(config.get_json("listen/endpoints"))))
     help = "another program may use the port: `ss -ltnp` lists them"
     raise UsageError(f"error: cannot listen on {where}: {why}\n{help_line(help)}")
@@ -230,6 +237,22 @@ def _endpoint(text: str, secured: bool) -> str:
             f"{help_line('create keys: `jacaros fleet keys FLEET MEMBER...`')}"
         )
     return f"{'tls' if secured else 'tcp'}/{address}"
+
+
+def _silence(address: str) -> str:
+    """Return why no router answers at an address."""
+    host, _, port = address.rpartition(":")
+    try:
+        socket.create_connection((host.strip("[]"), int(port)), 1.0).close()
+    except OSError as error:
+        return error.strerror or "no answer"
+    return "what answers there is not a router of this fleet, or has keys of another authority"
+
+
+def _reason(text: str) -> str:
+    """Return what went wrong, without the places in Zenoh's code that its errors name."""
+    by_system = re.search(r"(\w[^:\[\]]*) \(os error \d+\)", text)
+    return printable(by_system[1] if by_system else re.sub(r" at \S+:\d+\.", "", text))
 
 
 def _shown(endpoint: str) -> str:
