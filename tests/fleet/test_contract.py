@@ -12,6 +12,7 @@ from jacaros import GoalFailed, Mas
 from jacaros.artifacts import Artifact, Atom, OperationFailed, Out, Structure, link, operation
 from jacaros.fleet.carrier import Carrier
 from jacaros.fleet.joining import joining
+from jacaros.fleet.member import Member
 from jacaros.fleet.network import Network
 from jacaros.fleet.on_zenoh import ZenohCarrier
 from jacaros.runtime.clock import clock_of
@@ -49,6 +50,10 @@ class Counter(Artifact):
     async def pass_on(self) -> None:
         await self.call_linked("next", "take", 5)
 
+    @operation
+    def opaque(self, made: Out) -> None:
+        made.set(object())
+
     @link
     def take(self, number: int) -> None:
         self.update_property("count", number)
@@ -76,6 +81,7 @@ class Joined:
 
     def __init__(self, here: Mas, there: Mas) -> None:
         self.here, self.there = here, there
+        self.lines: list[str] = []
         self.warnings: list[str] = []
 
     async def settled(self, holds: Callable[[], bool] = lambda: True) -> None:
@@ -86,7 +92,7 @@ class Joined:
                 await mas.until_idle(timeout=10)
             if holds():
                 return
-        raise AssertionError("it does not become true")
+        raise AssertionError(f"it does not become true: {self.lines} {self.warnings}")
 
     async def shared(self) -> None:
         """Create a workspace with a counter *here*, and wait until *there* knows it."""
@@ -109,23 +115,22 @@ def joined(
         elif text == "warning":
             warnings.append(agent.removeprefix("[fleet] "))
 
+    def mas(name: str, seed: int, carrier: Carrier, members: list[Member]) -> Mas:
+        join = joining(carrier, name, joined=members.append)
+        return Mas(name=name, seed=seed, on_print=printed, on_log=printed, join=join)
+
     async def main() -> None:
         carrier = carriers()
+        members: list[Member] = []
         async with (
-            Mas(
-                name="here", seed=1, on_print=printed, on_log=printed, join=joining(carrier("here"), "here")
-            ) as here,
-            Mas(
-                name="there",
-                seed=2,
-                on_print=printed,
-                on_log=printed,
-                join=joining(carrier("there"), "there"),
-            ) as there,
+            mas("here", 1, carrier("here"), members) as here,
+            mas("there", 2, carrier("there"), members) as there,
         ):
             two = Joined(here, there)
-            two.warnings = warnings
-            await two.settled()
+            two.lines, two.warnings = lines, warnings
+            await two.settled(
+                lambda: all(any(peer.picture for peer in each.peers.values()) for each in members)
+            )
             await test(two)
 
     jacaros.run(main(), clock="fast" if carriers is simulated else "real")
@@ -336,3 +341,46 @@ async def test_python_code_uses_an_artifact_of_the_other_system(two) -> None:
     assert painter.value("count") == 2
     with pytest.raises(OperationFailed, match="too many"):
         await painter.act("check", 0, Out(), Out())
+
+
+_REFUSED = '[[ann] warning: message did not reach bob (not_permitted): "+!lesson <- .print(taught)."] warning'
+
+
+@on_both(["[ann] timeout", "[ann] [weather(fine)[source(bob)]]", "[ann] learned", _REFUSED])
+async def test_questions_and_plans_cross(two) -> None:
+    two.here.add_agent(
+        "ann",
+        """
+        !go.
+        +!go <- .wait(200);
+                .send(bob, askOne, never(X), A, 100); .print(A);
+                .send(bob, askAll, weather(_), L); .print(L);
+                .send(bob, askHow, {+!trick}, P); .add_plan(P); !trick;
+                .send(bob, tellHow, "+!lesson <- .print(taught).").
+        """,
+    )
+    two.there.add_agent("bob", "weather(fine). +!trick <- .print(learned). +?never(X) <- .wait(5000).")
+    await two.settled(lambda: len(two.lines) == 4)
+    assert two.warnings == ["here: refused a message: it has not the right `tell_how` (--fleet-allow)"]
+
+
+_UNSENDABLE = (
+    "a value of the class object cannot be sent to another system: send its parts (numbers, strings, atoms, "
+)
+
+
+@on_both([f"[ann] {_UNSENDABLE}structures, lists, maps)", '[bob] not_sendable("object")'])
+async def test_what_cannot_cross_fails_with_its_class(two) -> None:
+    await two.shared()
+    ann = two.here.add_agent(
+        "ann",
+        """
+        +!go <- joinWorkspace("/main/lab"); opaque(O); .send("bob@there", tell, got(O)).
+        -!go[error(not_sendable), error_msg(M)] <- .print(M).
+        """,
+    )
+    bob = two.there.add_agent(
+        "bob", "+!go <- opaque(_). -!go[env_failure_reason(R)] <- .print(R).", join=["/main/lab"]
+    )
+    await ann.achieve("go").wait(timeout=9)
+    await bob.achieve("go").wait(timeout=9)

@@ -89,8 +89,11 @@ def test_an_object_of_python_cannot_cross(value: object) -> None:
 
 @pytest.mark.parametrize(
     "data",
-    [[], [0], [1], [1, 7], [3], [4], [5, 1], [8, 1], [9, "x"], [77, 1], {"a": 1}, [0, ["a", 1, 2]], [0, ["a", 0, 0, 99]], [2, [2, []]]],
-)  # fmt: skip
+    [
+        *([], [0], [1], [1, 7], [3], [4], [5, 1], [8, 1], [9, "x"], [77, 1], {"a": 1}),
+        *([0, ["a", 1, 2]], [0, ["a", 0, 0, 99]], [2, [2, []]]),
+    ],
+)
 def test_data_of_a_stranger_that_is_no_term_is_refused(data: object) -> None:
     with pytest.raises((ValueError, LookupError, TypeError)):
         WIRE.to_term(data)

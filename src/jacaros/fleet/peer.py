@@ -335,7 +335,8 @@ class Peer:
 
     def _deliver(self, said: protocol.Message) -> str:
         """Put a message into the mailbox of its receiver. Return why that is impossible, or an empty text."""
-        right = TELL_HOW if said.performative in _HOW else SEND
+        changes = said.performative in _HOW and said.in_reply_to not in self._asked
+        right = TELL_HOW if changes else SEND
         if right not in self._rights:
             self.report(f"refused a message: it has not the right `{right}` (--fleet-allow)")
             return "not_permitted"
