@@ -154,7 +154,7 @@ def test_settings_without_effect_are_logged_once_per_kind(project: Path) -> None
     assert [text.splitlines()[0].partition("warning: ")[2] for text in result.errors] == [
         "the role `bidder` in `house.room` has no effect: roles in organisations are not supported",
         "the organisation `house` has no effect: organisations are not supported",
-        "the platform `jacamo.rest.JCMRest` has no effect: all agents run in one process",
+        "the platform `jacamo.rest.JCMRest` has no effect: nodes distribute agents",
     ]
 
 

@@ -40,12 +40,16 @@ PATHS: Final = Ignored(
     "Java classes and organisations are not supported",
     "put Python artifacts beside the project file, or in src/env",
 )
-PLATFORMS: Final = Ignored("platforms", "all agents run in one process")
+PLATFORMS: Final = Ignored(
+    "platforms", "nodes distribute agents", "declare `node lab`, and write `node: lab` in an agent"
+)
 INSPECTORS: Final = Ignored(
     "inspectors", "JaCaROS opens no windows", "watch the run with --view, or record it with --record"
 )
 JAVA: Final = Ignored("sections", "JaCaROS runs no Java code")
-INFRASTRUCTURES: Final = Ignored("infrastructures", "all agents run in one process")
+INFRASTRUCTURES: Final = Ignored(
+    "infrastructures", "nodes distribute agents", 'write `at "lab"` after an agent'
+)
 JAVA_ENVIRONMENT: Final = Ignored(
     "environments",
     "Java environments are not supported",

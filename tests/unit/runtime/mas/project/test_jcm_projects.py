@@ -236,7 +236,7 @@ def test_a_run_warns_once_for_each_kind_and_the_checker_reports_everything(write
     assert len(told) == 7, told
     roles = "the role `cook` in `o.kitchen`, the role `waiter` in `o.hall` and the role `guest` in `o.hall`"
     assert told[0] == f"{roles} have no effect: roles in organisations are not supported (lines 2, 6)"
-    assert "the platform `jade` has no effect: all agents run in one process" in told
+    assert "the platform `jade` has no effect: nodes distribute agents" in told
     assert load_deployment(path).agents[0].focus == (FocusSpec("table", "/main/far"),)
 
 
@@ -272,7 +272,7 @@ def test_a_mas2j_file_reports_what_has_no_effect(folder: Path, write: Write) -> 
     assert [(node.name, node.address) for node in deployment.nodes] == [("h0", None), ("h1", None)]
     assert [each.node for each in deployment.agents] == ["h1", "h1", None, None]
     assert [each.message for each in deployment.ignored] == [
-        "the infrastructure `Jade` has no effect: all agents run in one process",
+        "the infrastructure `Jade` has no effect: nodes distribute agents",
         "the environment `x.Env` has no effect: Java environments are not supported",
         "`executionControl` and `directives` have no effect: JaCaROS runs no Java code (lines 7, 20)",
         "the architecture `x.A` has no effect: JaCaROS runs no architectures of projects",
