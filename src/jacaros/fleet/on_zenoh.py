@@ -32,6 +32,7 @@ class ZenohCarrier:
         self._session: Any = None
         self._publishers: dict[MemberId, Any] = {}
         self._arrived: deque[tuple[str, Any]] = deque()
+        self._is_called = False
         self._loop: asyncio.AbstractEventLoop | None = None
         self._listener: Listener | None = None
         self._me = MemberId("", "")
@@ -71,9 +72,9 @@ class ZenohCarrier:
 
     def _pass_on(self, kind: str, sample: Any) -> None:
         if len(self._arrived) < _MOST or kind == "token":
-            first = not self._arrived
             self._arrived.append((kind, sample))
-            if first and self._loop is not None:
+            if not self._is_called and self._loop is not None:
+                self._is_called = True
                 with suppress(RuntimeError):  # the loop is closed
                     self._loop.call_soon_threadsafe(self._take)
 
@@ -81,10 +82,9 @@ class ZenohCarrier:
 
     def _take(self) -> None:
         """Take what has arrived."""
+        self._is_called = False  # first: what arrives from now on calls again
         for _ in range(len(self._arrived)):
             self._arrive(*self._arrived.popleft())
-        if self._arrived and self._loop is not None:
-            self._loop.call_soon(self._take)
 
     def _arrive(self, kind: str, sample: Any) -> None:
         if self._session is None or self._listener is None:
@@ -93,7 +93,10 @@ class ZenohCarrier:
         if kind == "token" and len(parts) == 5:
             member = MemberId(parts[3], parts[4])
             if member != self._me:
-                self._listener.present(member, sample.kind == zenoh.SampleKind.PUT)
+                is_there = sample.kind == zenoh.SampleKind.PUT
+                if not is_there and (publisher := self._publishers.pop(member, None)) is not None:
+                    publisher.undeclare()
+                self._listener.present(member, is_there)
         elif kind == "datagram" and len(parts) == 8:
             self._listener.received(MemberId(parts[6], parts[7]), sample.payload.to_bytes())
         elif kind == "datagram":
