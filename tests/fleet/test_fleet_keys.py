@@ -34,13 +34,13 @@ def contents(folder: Path) -> dict[Path, bytes]:
 
 
 def test_each_member_gets_a_folder_that_only_its_user_can_read(lab: Path) -> None:
-    assert {each.name for each in lab.iterdir()} == {"authority", "router", "one", "two"}
-    for name in ("router", "one", "two"):
+    assert {each.name for each in lab.iterdir()} == {"authority", "router", "operator", "one", "two"}
+    for name in ("router", "operator", "one", "two"):
         assert {each.name for each in (lab / name).iterdir()} == FILES
         assert stat.S_IMODE((lab / name).stat().st_mode) == 0o700
         assert stat.S_IMODE((lab / name / "key.pem").stat().st_mode) == 0o600
     assert stat.S_IMODE((lab / "authority" / "key.pem").stat().st_mode) == 0o600
-    assert read_keys(lab / "one", "lab", "one").members == ("one", "two")
+    assert read_keys(lab / "one", "lab", "one").members == ("one", "operator", "two")
 
 
 def test_running_again_adds_members_and_keeps_all_keys(lab: Path) -> None:
@@ -48,17 +48,17 @@ def test_running_again_adds_members_and_keeps_all_keys(lab: Path) -> None:
     assert create_keys(lab, "lab", ["one", "three"]) == ["three"]
     after = contents(lab)
     assert {path for path, content in before.items() if after[path] != content} == {
-        lab / name / "members.txt" for name in ("one", "two", "router")
+        lab / name / "members.txt" for name in ("one", "two", "router", "operator")
     }
     for name in ("one", "two", "three", "router"):
-        assert read_keys(lab / name, "lab", name).members == ("one", "three", "two")
+        assert read_keys(lab / name, "lab", name).members == ("one", "operator", "three", "two")
 
 
 def test_a_member_whose_folder_is_deleted_is_no_longer_in_the_lists(lab: Path) -> None:
     shutil.rmtree(lab / "two")
     create_keys(lab, "lab", [])
-    assert members_in(lab) == ["one"]
-    assert (lab / "router" / "members.txt").read_text() == "one\n"
+    assert members_in(lab) == ["one", "operator"]
+    assert (lab / "router" / "members.txt").read_text() == "one\noperator\n"
 
 
 def test_an_interrupted_command_leaves_no_half_of_a_folder(
@@ -203,14 +203,15 @@ def test_the_command_names_what_it_creates_and_what_to_copy(tmp_path: Path) -> N
     assert first.stdout.splitlines() == [
         f"created {fleet / 'authority'}",
         f"created {fleet / 'router'}",
+        f"created {fleet / 'operator'}",
         f"created {fleet / 'one'}",
-        "members of fleet lab: one",
+        "members of fleet lab: one, operator",
     ]
     second = jacaros("fleet", "keys", "lab", "two", config=tmp_path)
     assert second.stdout.splitlines() == [
         f"created {fleet / 'two'}",
-        "members of fleet lab: one, two",
-        "copy members.txt of one and router to their computers again, and restart them",
+        "members of fleet lab: one, operator, two",
+        "copy members.txt of one, operator and router to their computers again, and restart them",
     ]
     assert first.returncode == second.returncode == 0
     wrong = jacaros("fleet", "keys", "lab", "router", config=tmp_path)

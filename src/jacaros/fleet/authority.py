@@ -11,7 +11,7 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from jacaros.fleet.keys import CA, CERTIFICATE, KEY, MEMBERS, NO_EXTRA
-from jacaros.fleet.names import AUTHORITY, ROUTER, check_name
+from jacaros.fleet.names import AUTHORITY, OPERATOR, ROUTER, check_name
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.files.texts import help_line
 
@@ -36,7 +36,7 @@ class _Issuer:
 
 
 def create_keys(folder: Path, fleet: str, members: Iterable[str]) -> list[str]:
-    """Create what is missing of an authority, keys for routers, and keys for *members*; return the names created.
+    """Create an authority and the keys of routers, the operator and *members*, unless they exist; return the names created.
 
     Existing keys are kept. All folders get the new list of members.
 
@@ -44,7 +44,7 @@ def create_keys(folder: Path, fleet: str, members: Iterable[str]) -> list[str]:
         UsageError: a name is invalid, or the folder has copied keys but no authority.
     """
     check_name("fleet", fleet)
-    wanted = list(dict.fromkeys(members))
+    wanted = list(dict.fromkeys([OPERATOR, *members]))
     for name in wanted:
         check_name("member", name)
     created = [] if (folder / AUTHORITY).is_dir() else [AUTHORITY]

@@ -7,6 +7,8 @@ from jacaros.runtime.files.texts import help_line, printable
 
 AUTHORITY, ROUTER = "authority", "router"
 """Names that no member can have: the authority of a fleet, and its routers."""
+OPERATOR = "operator"
+"""The member that commands such as `jacaros fleet list` are."""
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,47}")
 """At most 48 characters: the path of a Unix socket has at most 103, the name in a certificate 64."""
 

@@ -19,9 +19,9 @@ from jacaros.runtime.cli.usage import examples
 def keys_command(fleet: str, members: tuple[str, ...], folder: Path | None) -> None:
     """Create the keys of MEMBERs, with which they reach each other over a network.
 
-    Each member gets a folder to copy to its computer, under the same path, and so does `router`. Existing keys are kept.
-    The keys of the authority stay on this computer: with them, you add members later. Members refuse names that are not
-    in their file `members.txt`.
+    Each member gets a folder to copy to its computer, under the same path. So do routers (`router`), and you for commands
+    such as `jacaros fleet list` (`operator`). The folder `authority` stays on this computer: you add members with it later.
+    Existing keys are kept. Members ignore other members that are not in their file `members.txt`.
     """  # fmt: skip
     from jacaros.fleet.authority import create_keys, members_in  # here: it imports cryptography
     from jacaros.fleet.keys import MEMBERS, fleet_folder
