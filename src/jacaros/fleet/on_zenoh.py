@@ -5,7 +5,10 @@ of its own; here they are passed on to the event loop.
 """
 
 import asyncio
+import queue
+import threading
 from collections import deque
+from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
@@ -17,6 +20,8 @@ from jacaros.fleet.network import Network, open_session, session_config
 _ROOT = "jacaros"
 _MOST = 100_000
 """Arrivals that wait for the event loop at most; more are dropped, as by a network, and sent again."""
+_CLOSING = 1.0
+"""Seconds that a thread of Zenoh has to end."""
 
 
 class ZenohCarrier:
@@ -37,6 +42,8 @@ class ZenohCarrier:
         self._listener: Listener | None = None
         self._me = MemberId("", "")
         self._declared: list[Any] = []
+        self._threads = 0
+        self._ended: queue.SimpleQueue[threading.Thread] = queue.SimpleQueue()
 
     async def open(self, me: MemberId, listener: Listener) -> None:
         """Open the session. See `jacaros.fleet.carrier.Carrier.open`."""
@@ -50,9 +57,11 @@ class ZenohCarrier:
         me = self._me
         self._declared = [
             session.declare_subscriber(
-                f"{self._root}/to/{me.name}/{me.incarnation}/from/**", self._on_datagram
+                f"{self._root}/to/{me.name}/{me.incarnation}/from/**", self._calling(self._on_datagram)
             ),
-            session.liveliness().declare_subscriber(f"{self._root}/member/**", self._on_token, history=False),
+            session.liveliness().declare_subscriber(
+                f"{self._root}/member/**", self._calling(self._on_token), history=False
+            ),
         ]
         known = [
             ("token", reply.ok) for reply in session.liveliness().get(f"{self._root}/member/**") if reply.ok
@@ -61,6 +70,11 @@ class ZenohCarrier:
             session.liveliness().declare_token(f"{self._root}/member/{me.name}/{me.incarnation}")
         )
         return known
+
+    def _calling(self, callback: Callable[[Any], None]) -> Any:
+        """Return a handler that calls *callback* in a thread of its own, which is noted when it ends."""
+        self._threads += 1
+        return zenoh.handlers.Callback(callback, lambda: self._ended.put(threading.current_thread()))
 
     # ---- in threads of Zenoh
 
@@ -120,4 +134,10 @@ class ZenohCarrier:
         """Close the session."""
         session, self._session = self._session, None
         if session is not None:
-            await asyncio.to_thread(session.close)
+            await asyncio.to_thread(self._close, session)
+
+    def _close(self, session: Any) -> None:
+        session.close()
+        with suppress(queue.Empty):  # a thread that survives the interpreter aborts the process
+            for _ in range(self._threads):
+                self._ended.get(timeout=_CLOSING).join(_CLOSING)
