@@ -37,7 +37,13 @@ BUSY = 64 << 10
 _LAG = 0.1
 """Seconds without an acknowledgement after which it is, too, unless the way there and back takes longer."""
 _SAMPLES = 16
-"""Measurements of the clocks from which that with the shortest delay is taken."""
+"""Measurements of the clocks, one a second, from which that with the shortest delay is taken."""
+_PRECISION = 0.001
+"""Seconds by which two right measurements of the clocks may differ, whatever their delays: clocks drift."""
+NOTABLE = 0.1
+"""Seconds by which the offset of a clock changes before programs are told."""
+_FEW = 3
+"""Measurements from which one with a long delay counts: the network has no shorter one."""
 
 
 class Malformed(Exception):
@@ -104,16 +110,20 @@ class _Kept:
 class Clocks:
     """Delay, and offset of the other clock, measured from the times in packets, as NTP does.
 
+    The measurement with the shortest delay of each second is kept: bursts of traffic do not displace it.
+
     Attributes:
         delay: seconds there and back, smoothed; None before the first measurement.
         least: the shortest delay so far.
         offset: seconds that the other clock is ahead of ours.
+        noted: the offset when `has_moved` was last True; None before.
     """
 
     def __init__(self) -> None:
         self.delay: float | None = None
         self.least = self.offset = 0.0
-        self._samples: deque[tuple[float, float]] = deque(maxlen=_SAMPLES)
+        self.noted: float | None = None
+        self._samples: deque[tuple[float, float, int]] = deque(maxlen=_SAMPLES)
         self._heard = self._heard_at = 0.0
 
     def heard(self, packet: Packet, now: float) -> None:
@@ -124,9 +134,31 @@ class Clocks:
         delay = max(0.0, now - packet.echo - packet.held)
         received = packet.sent - packet.held
         self.least = min(delay, self.least) if self._samples else delay
-        self._samples.append((delay, (received - packet.echo + packet.sent - now) / 2))
-        self.offset = min(self._samples)[1]
+        self._note(delay, (received - packet.echo + packet.sent - now) / 2, int(now))
         self.delay = delay if self.delay is None else self.delay + (delay - self.delay) / 8
+
+    def _note(self, delay: float, offset: float, second: int) -> None:
+        samples = self._samples
+        # An offset is right up to half of its delay. One that contradicts the others was measured after a clock was set.
+        if samples and abs(offset - self.offset) > (delay + min(samples)[0]) / 2 + _PRECISION:
+            samples.clear()
+        if not samples or samples[-1][2] != second:
+            samples.append((delay, offset, second))
+        elif delay < samples[-1][0]:
+            samples[-1] = (delay, offset, second)
+        else:
+            return
+        self.offset = min(samples)[1]
+
+    def has_moved(self) -> bool:
+        """Return whether the offset is new, or has changed by more than a tenth of a second since the last True."""
+        samples = self._samples
+        if not samples or (len(samples) < _FEW and min(samples)[0] > NOTABLE):
+            return False  # too inaccurate: both sides are busy when they begin
+        if self.noted is not None and abs(self.offset - self.noted) <= NOTABLE:
+            return False
+        self.noted = self.offset
+        return True
 
     def echo(self, now: float) -> tuple[float, float]:
         """Return what a packet that is sent now says of the newest one that was heard."""

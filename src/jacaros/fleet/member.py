@@ -4,9 +4,11 @@ import os
 import time
 from collections import deque
 from collections.abc import Callable
+from functools import partial
 from secrets import token_hex
 
-from jacaros.fleet import protocol
+from jacaros.artifacts.env.environment import Environment
+from jacaros.fleet import fleet_artifact, protocol
 from jacaros.fleet.agents import FleetAgents
 from jacaros.fleet.announced import Announced
 from jacaros.fleet.artifacts import ArtifactNames
@@ -53,7 +55,7 @@ class Member:
 
     Attributes:
         peers: other members by name, also lost ones.
-        watchers: called whenever a member comes or goes.
+        watchers: called whenever a member comes or goes, and when the offset of its clock changes.
     """
 
     def __init__(
@@ -97,6 +99,7 @@ class Member:
         self._ends.append(directory.join(self._agents, elsewhere=True))
         self._ends.append(directory.watch(self._agent_news))
         self._ends.append(self._announced.end)
+        self._ends.append(self._system.when_situated(self._show))
         await self._carrier.open(self.me, self)
         self._pulse_at = self._system.clock.elapsed
         if not await self._is_alone():
@@ -121,15 +124,43 @@ class Member:
         there = [each for each in self.peers.values() if each.is_there]
         for peer in there:
             peer.say(protocol.Bye())
-        patience = self._system.clock.elapsed + GOODBYE
-        while any(each.backlog for each in there) and self._system.clock.elapsed < patience:
-            await self._system.clock.sleep(0.01)
+        clock = self._system.clock
+        patience = clock.elapsed + GOODBYE
+        while sum(each.backlog for each in there) and clock.elapsed < patience:
+            await clock.sleep(0.01)
         for timer in (self._timer, *self._forgetting.values()):
             if timer is not None:
                 timer.cancel()
         for peer in list(self.peers.values()):
             peer.lose("left")
         await self._carrier.close()
+
+    # ---- what agents perceive
+
+    def states(self) -> fleet_artifact.States:
+        """Return the states of all other members, and the offsets of their clocks."""
+        return {
+            name: (each.state, each.channel.clocks.noted) for name, each in self.peers.items() if each.state
+        }
+
+    def watch(self, watcher: Callable[[], None]) -> Callable[[], None]:
+        """Call *watcher* whenever `states` may have changed. Return a function that ends this."""
+
+        def changed(name: str, state: str) -> None:
+            watcher()
+
+        self.watchers.append(changed)
+        return lambda: self.watchers.remove(changed)
+
+    def _show(self, environment: Environment) -> None:
+        """Show the members in the environment of this one, and in no other."""
+        main, name = environment.workspace("/main"), fleet_artifact.NAME
+        if any(each.name == name for each in main.artifacts()):
+            self._warn(f"agents do not perceive the members: the project has an artifact `{name}`")
+        else:
+            main.offer(name, fleet_artifact.Fleet, (self.me.name, self.states, self.watch), personal=True)
+
+    # ---- news for the others
 
     def _agent_news(self, name: str, present: bool) -> None:
         if name != DIRECTORY_NAME:
@@ -158,6 +189,8 @@ class Member:
                 peer.heard_at = clock.elapsed
             elif peer.is_there and clock.elapsed - peer.heard_at > self._silence:
                 peer.lose()
+            elif peer.state and peer.channel.clocks.has_moved():
+                self._tell_watchers(peer.name, peer.state)
 
     # ---- what the carrier tells
 
@@ -250,11 +283,20 @@ class Member:
         )
         self._stop_waiting(peer)
         if state == "lost":
-            self._forgetting[peer.id] = self._system.clock.call_later(MEMORY, peer.forget)
+            self._forgetting[peer.id] = self._system.clock.call_later(MEMORY, partial(self._expire, peer))
         elif state == "left":
             self._end(peer)
+        self._tell_watchers(peer.name, state)
+
+    def _tell_watchers(self, name: str, state: str) -> None:
         for watcher in tuple(self.watchers):
-            watcher(peer.name, state)
+            watcher(name, state)
+
+    def _expire(self, peer: Peer) -> None:
+        """It was lost for too long. It may return after all."""
+        peer.forget()
+        peer.state = ""
+        self._tell_watchers(peer.name, "left")
 
     def _stop_waiting(self, peer: Peer) -> None:
         waiting = self._forgetting.pop(peer.id, None)

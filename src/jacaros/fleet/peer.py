@@ -51,6 +51,7 @@ class Peer:
         is_absent: whether the network says that it is not there.
         heard_at: when it was last heard, on the clock of the run.
         picture: what it said of itself last; None before.
+        state: ``joined``, ``lost`` or ``left``; empty before it has joined.
     """
 
     def __init__(
@@ -73,12 +74,11 @@ class Peer:
         self._rights, self._changed = rights, changed
         self._epoch = 1
         self._its_epoch = 0
-        self._state = ""
+        self.state = ""
         self._is_known = False
         self._reported: set[str] = set()
         self._asked: dict[str, SpeechAct] = {}
         self._services: dict[tuple[str, str], str] = {}
-        self._answers: dict[int, Callable[[Any], None]] = {}
         wire = self._wire = Wire(names.name, names.find)
         self._calls = Calls(self, self.name)
         self._served = Served(self._environment, names, wire, self)
@@ -231,8 +231,8 @@ class Peer:
         self._become("joined")
 
     def _become(self, state: str) -> None:
-        if state != self._state:
-            self._state = state
+        if state != self.state:
+            self.state = state
             self._changed(self, state)
 
     def _if_known(self, handler: Callable[[Any], None]) -> Callable[[Any], None]:

@@ -220,7 +220,7 @@ class RemoteWorkspace(ports.Workspace):
     def __init__(self, path: str, its_path: str, member: str, all: RemoteWorkspaces) -> None:
         self.path, self.its_path = path, its_path
         self.name = path.rpartition("/")[2]
-        self._member, self._all = member, all
+        self.member, self._all = member, all
         self._offers: dict[ArtifactId, Collection[str]] = {}
         self._watchers: dict[object, Callable[[ArtifactId, bool], None]] = {}
 
@@ -233,7 +233,7 @@ class RemoteWorkspace(ports.Workspace):
         for artifact in self.artifacts():
             if artifact.name == name:
                 return artifact
-        lost = "" if self._all.present else f": {gone(self._member)[0]}"
+        lost = "" if self._all.present else f": {gone(self.member)[0]}"
         help = aside(name, [each.name for each in self.artifacts()])
         reason = Structure("artifact_not_available", (name,))
         raise UnknownArtifact(f"unknown artifact `{name}` in workspace {self.path}{help}{lost}", reason)
@@ -290,7 +290,7 @@ class RemoteWorkspace(ports.Workspace):
 
     def _ask(self, said: Callable[[int], protocol.Said], done: Callable[[protocol.Ended], None]) -> UnderWay:
         if not self._all.present:
-            done(protocol.Ended(0, False, *gone(self._member), [], None))
+            done(protocol.Ended(0, False, *gone(self.member), [], None))
             return ENDED
         return self._all.calls.ask(said, done)
 

@@ -53,6 +53,7 @@ from jacaros.agents.terms.values import (
     parted,
 )
 from jacaros.artifacts.env.errors import ArtifactId
+from jacaros.artifacts.env.ports import Workspace
 from jacaros.artifacts.env.property import ObservableProperty, Observation
 from jacaros.artifacts.env.values import Atom, Out, Structure, plain
 from jacaros.runtime.trace import Cause
@@ -288,6 +289,7 @@ ADD, REMOVE, SIGNAL = "add", "remove", "signal"
 
 _ARTIFACT_ID = functor("artifact_id", 1)
 _ARTIFACT_NAME = functor("artifact_name", 1)
+_MEMBER = functor("member", 1)
 _PERCEPT_TYPE = functor("percept_type", 1)
 _WORKSPACE = functor("workspace", 2)
 _OBSERVABLE_PROPERTY = (_PERCEPT_TYPE, atom("obs_prop"))
@@ -299,7 +301,8 @@ class PerceptWriter:
     """Writes observations as percepts, with the annotations of their origin.
 
     ``count(1)[artifact_id(cobj_1), artifact_name(c), percept_type(obs_prop), source(percept), workspace("/main",
-    cobj_2)]``, as in the bridge between CArtAgO and Jason, but the name of the artifact is always an atom.
+    cobj_2)]``, as in the bridge between CArtAgO and Jason, but the name of the artifact is always an atom. An artifact of
+    another member of a fleet has ``member(Name)``, too.
 
     Args:
         references: shared by all agents of a run.
@@ -310,7 +313,7 @@ class PerceptWriter:
             comes from another observer of the same observation.
     """
 
-    def __init__(self, references: References, workspace: Callable[[str], object]) -> None:
+    def __init__(self, references: References, workspace: Callable[[str], Workspace]) -> None:
         self.references = references
         self._workspace = workspace
         self.newest: Observation | None = None
@@ -395,14 +398,16 @@ class PerceptWriter:
         """Return the annotations of properties and of signals of an artifact."""
         known = self._annotations.get(artifact)
         if known is None:
-            workspace = self.references.of(self._workspace(artifact.workspace))
+            holder = self._workspace(artifact.workspace)
+            workspace, member = self.references.of(holder), holder.member
             identity = (_ARTIFACT_ID, self.references.of(artifact))
             name = (_ARTIFACT_NAME, atom_of(artifact.name))
             place = (_WORKSPACE, String(artifact.workspace), workspace)
+            origin = (identity, name, (_MEMBER, atom_of(member))) if member else (identity, name)
             # In the canonical order of annotations: this code runs for every agent.
             known = self._annotations[artifact] = (
-                (identity, name, _OBSERVABLE_PROPERTY, SOURCE_PERCEPT, place),
-                (identity, name, _OBSERVABLE_EVENT, SOURCE_PERCEPT, place),
+                (*origin, _OBSERVABLE_PROPERTY, SOURCE_PERCEPT, place),
+                (*origin, _OBSERVABLE_EVENT, SOURCE_PERCEPT, place),
             )
         return known
 

@@ -92,11 +92,13 @@ class Workspace(Protocol):
         path: full path in the environment in which it is visible, such as ``/main/lab``.
         name: last part of the path.
         known: results of `providers` that still hold. Empty if they cannot be known, as for a remote workspace.
+        member: name of the system of a fleet that has it; empty for this one.
     """
 
     path: str
     name: str
     known: Mapping[tuple[str, int], tuple[ArtifactId, ...]] = MappingProxyType({})
+    member: str = ""
 
     # ---- lookups
 

@@ -11,6 +11,7 @@ import sys
 import warnings
 from collections.abc import Callable, Coroutine, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from types import FrameType
@@ -23,7 +24,7 @@ from jacaros.runtime.clock import Clock, VirtualClock, WallClock, new_event_loop
 from jacaros.runtime.files.texts import is_file
 from jacaros.runtime.mas.agents.programs import PROJECTS, source_folders
 from jacaros.runtime.mas.console import RunConsole
-from jacaros.runtime.mas.deployment import AgentSpec, Deployment, ProjectError
+from jacaros.runtime.mas.deployment import AgentSpec, Deployment, FocusSpec, ProjectError
 from jacaros.runtime.mas.options import RunOptions
 from jacaros.runtime.mas.system import Join, System
 from jacaros.runtime.mas.watchdog import Watchdog
@@ -76,6 +77,15 @@ def mapped(deployment: Deployment, names: Sequence[str | Path]) -> Deployment:
     return with_mappings(deployment, tuple(map(str, names)))
 
 
+def in_fleet(deployment: Deployment) -> Deployment:
+    """Return the deployment of a member of a fleet: a lone program perceives the other members without asking."""
+    agents = deployment.agents
+    if len(agents) != 1 or agents[0].span is not None:
+        return deployment
+    focus = (*agents[0].focus, FocusSpec("fleet", "main"))
+    return replace(deployment, agents=(replace(agents[0], focus=focus),))
+
+
 def _lone_agent(path: Path) -> Deployment:
     if not is_file(path):
         raise ProjectError([Diagnostic("error", f"file not found: {path}")])
@@ -114,6 +124,8 @@ def launch(
     deployment = mapped(
         project if isinstance(project, Deployment) else load_deployment(project), options.mappings
     )
+    if join is not None:
+        deployment = in_fleet(deployment)
     clock = chosen_clock(options, console)
 
     async def main() -> int:

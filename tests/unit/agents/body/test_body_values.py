@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from types import SimpleNamespace
 
 import numpy
 import pytest
@@ -140,7 +141,7 @@ def test_maps_and_sets_become_dictionaries_and_sorted_lists():
 
 
 LAMP = ArtifactId("Lamp", "Lamp", "/main/lab", 1, None)
-MAIN = object()
+MAIN = SimpleNamespace(member="")
 
 
 def writer() -> PerceptWriter:

@@ -19,7 +19,7 @@ from jacaros.runtime.mas.console import StandardConsole, entered, place_of_fault
 from jacaros.runtime.mas.deployment import AgentSpec, Deployment, FocusSpec
 from jacaros.runtime.mas.embedding.running_agent import RunningAgent
 from jacaros.runtime.mas.embedding.waits import RunEnded, RunWaits, UnknownAgent
-from jacaros.runtime.mas.launch import chosen_clock, load_deployment, mapped
+from jacaros.runtime.mas.launch import chosen_clock, in_fleet, load_deployment, mapped
 from jacaros.runtime.mas.options import RunOptions
 from jacaros.runtime.mas.system import Join, System
 
@@ -142,7 +142,8 @@ class Mas:
     ) -> None:
         self._options = replace(options or RunOptions(), **changes)
         base = Path(folder) if folder is not None else Path.cwd()
-        self._deployment = _deployment(project, name, base, self._options.mappings)
+        declared = _deployment(project, name, base, self._options.mappings)
+        self._deployment = declared if join is None else in_fleet(declared)
         self._options.check()
         self._console = PrintedConsole(on_print, on_log)
         self._join = join
