@@ -16,6 +16,7 @@ COLOURS = {
     "robots": "#fbe3c3",
     "runtime": "#e3e3e8",
     "look": "#efdcf3",
+    "fleet": "#efdcf3",
     "testing": "#efdcf3",
 }
 """One colour for each package of the root."""
