@@ -348,18 +348,18 @@ _REFUSED = '[[ann] warning: message did not reach bob (not_permitted): "+!lesson
 
 @on_both(["[ann] timeout", "[ann] [weather(fine)[source(bob)]]", "[ann] learned", _REFUSED])
 async def test_questions_and_plans_cross(two) -> None:
-    two.here.add_agent(
+    ann = two.here.add_agent(
         "ann",
         """
-        !go.
-        +!go <- .wait(200);
-                .send(bob, askOne, never(X), A, 100); .print(A);
+        +!go <- .send(bob, askOne, never(X), A, 100); .print(A);
                 .send(bob, askAll, weather(_), L); .print(L);
                 .send(bob, askHow, {+!trick}, P); .add_plan(P); !trick;
                 .send(bob, tellHow, "+!lesson <- .print(taught).").
         """,
     )
     two.there.add_agent("bob", "weather(fine). +!trick <- .print(learned). +?never(X) <- .wait(5000).")
+    await two.settled(lambda: "bob" in two.here.system.directory.names())
+    await ann.achieve("go").wait(timeout=9)
     await two.settled(lambda: len(two.lines) == 4)
     assert two.warnings == ["here: refused a message: it has not the right `tell_how` (--fleet-allow)"]
 

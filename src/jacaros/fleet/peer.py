@@ -19,6 +19,7 @@ from jacaros.fleet.remote import Calls, RemoteWorkspace, RemoteWorkspaces
 from jacaros.fleet.rights import OPERATE, SEE, SEND, TELL_HOW
 from jacaros.fleet.served import Served
 from jacaros.fleet.wire import NotSendable, Wire
+from jacaros.runtime.errors import InternalError
 from jacaros.runtime.mas.system import System
 
 FULL = 8 << 20
@@ -81,7 +82,9 @@ class Peer:
         self._services: dict[tuple[str, str], str] = {}
         wire = self._wire = Wire(names.name, names.find)
         self._calls = Calls(self, self.name)
-        self._served = Served(self._environment, names, wire, self)
+        self._served = Served(
+            self._environment, names, wire, self, lambda agent: agents.called(agent, self.name)
+        )
         self.channel.when_drained = self._served.drained
         self._remote = RemoteWorkspaces(id.incarnation, names, wire, self, self._calls)
         self._workspaces: dict[str, tuple[RemoteWorkspace, Callable[[], None]]] = {}
@@ -145,6 +148,8 @@ class Peer:
                 handler(said)
         except OperationFailed as failure:
             self.report(failure.message)
+        except InternalError:
+            raise
         except Exception as error:  # whatever it says, nothing here ends because of it
             kind = type(error).__name__
             self.report(f"dropped something that is no valid message: {kind}: {error}", "invalid")

@@ -90,17 +90,23 @@ class Served:
         names: names of artifacts.
         wire: converts values.
         line: the way to the other member.
+        called: returns how an agent of that member is called here, so that none is taken for one of this member.
 
     Attributes:
         late: observers whose observations wait until less is under way.
     """
 
     def __init__(
-        self, environment: Callable[[], Environment], names: ArtifactNames, wire: Wire, line: Line
+        self,
+        environment: Callable[[], Environment],
+        names: ArtifactNames,
+        wire: Wire,
+        line: Line,
+        called: Callable[[str], str],
     ) -> None:
         self.names, self.line = names, line
         self.late: dict[_Watching, None] = {}
-        self._environment, self._wire = environment, wire
+        self._environment, self._wire, self._called = environment, wire, called
         self._begun: set[int] = set()
         self._calls: dict[int, UnderWay] = {}
         self._watching: dict[tuple[int, int], _Watching] = {}
@@ -152,10 +158,15 @@ class Served:
         def done(outcome: OperationOutcome) -> None:
             self._end(asked.call, outcome, outs)
 
-        request = OperationRequest(artifact, asked.operation, arguments, asked.agent, None, done)
+        request = OperationRequest(
+            artifact, asked.operation, arguments, self._caller(asked.agent), None, done
+        )
         request.timeout, request.urgency = asked.timeout, asked.urgency
         request.policy, request.yields = asked.policy, asked.yields  # type: ignore[assignment]
         self._keep(asked.call, self._environment().execute(request))
+
+    def _caller(self, agent: str | None) -> str | None:
+        return None if agent is None else self._called(agent)
 
     def _keep(self, call: int, under_way: UnderWay) -> None:
         """Keep a call, unless it has ended already."""
@@ -185,7 +196,7 @@ class Served:
         def begin() -> UnderWay:
             workspace = self._environment().workspace(asked.workspace)
             arguments = self._wire.to_value(asked.arguments)
-            return workspace.create(asked.name, asked.type_name, arguments, asked.creator, made)
+            return workspace.create(asked.name, asked.type_name, arguments, self._caller(asked.creator), made)
 
         self._begun.add(asked.call)
         try:
@@ -233,7 +244,7 @@ class Served:
             if (former := self._watching.pop(key, None)) is not None:
                 workspace.stop_focus(artifact, former)
                 self.late.pop(former, None)
-            watching = _Watching(self, asked.observer, asked.agent, artifact)
+            watching = _Watching(self, asked.observer, self._called(asked.agent), artifact)
 
             def begun(outcome: OperationOutcome) -> None:
                 watching.begin()
