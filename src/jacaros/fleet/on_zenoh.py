@@ -10,18 +10,24 @@ import threading
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
+from itertools import count
 from typing import Any
 
 import zenoh
 
 from jacaros.fleet.carrier import Listener, MemberId
-from jacaros.fleet.network import Network, open_session, session_config
+from jacaros.fleet.network import Network, NoRouter, open_session, session_config
+from jacaros.runtime.errors import JacarosError
 
 _ROOT = "jacaros"
 _MOST = 100_000
 """Arrivals that wait for the event loop at most; more are dropped, as by a network, and sent again."""
 _CLOSING = 1.0
 """Seconds that a thread of Zenoh has to end."""
+_TRY = 1.0
+"""Seconds between attempts to reach a router."""
+_REMIND = 5
+"""Attempts between lines about them."""
 
 
 class ZenohCarrier:
@@ -29,10 +35,14 @@ class ZenohCarrier:
 
     Args:
         network: which fleet, and how it is reached.
+        log: takes a line about a router that does not answer.
     """
 
-    def __init__(self, network: Network) -> None:
+    def __init__(self, network: Network, log: Callable[[str], None] = lambda line: None) -> None:
         self._network = network
+        self._log = log
+        self._waiting: asyncio.Task[None] | None = None
+        self._is_closed = False
         self._root = f"{_ROOT}/{network.fleet}"
         self._session: Any = None
         self._publishers: dict[MemberId, Any] = {}
@@ -46,14 +56,44 @@ class ZenohCarrier:
         self._ended: queue.SimpleQueue[threading.Thread] = queue.SimpleQueue()
 
     async def open(self, me: MemberId, listener: Listener) -> None:
-        """Open the session. See `jacaros.fleet.carrier.Carrier.open`."""
+        """Open the session, or keep trying in the background: a robot without its router must run, too.
+
+        See `jacaros.fleet.carrier.Carrier.open`.
+        """
         self._me, self._listener = me, listener
         self._loop = asyncio.get_running_loop()
+        try:
+            await self._connect()
+        except NoRouter as missing:
+            self._log(f"warning: waiting for a router: {missing}")
+            self._waiting = self._loop.create_task(self._wait())
+
+    async def _connect(self) -> None:
         for kind, sample in await asyncio.to_thread(self._open):
             self._arrive(kind, sample)
 
+    async def _wait(self) -> None:
+        """Try again until a router answers."""
+        for attempt in count(1):
+            await asyncio.sleep(_TRY)
+            try:
+                await self._connect()
+            except NoRouter as missing:
+                if attempt % _REMIND == 0:
+                    self._log(f"warning: still waiting for a router: {missing}")
+            except JacarosError as error:
+                self._log(str(error))
+                break
+            else:
+                self._log("connected to a router")
+                break
+
     def _open(self) -> list[tuple[str, Any]]:
-        session = self._session = open_session(session_config(self._network))
+        session = open_session(session_config(self._network))
+        if self._is_closed:  # while this thread was waiting
+            session.close()  # type: ignore[no-untyped-call]  # the stub of Zenoh says nothing of it
+            return []
+        self._session = session
         me = self._me
         self._declared = [
             session.declare_subscriber(
@@ -69,6 +109,12 @@ class ZenohCarrier:
         self._declared.append(
             session.liveliness().declare_token(f"{self._root}/member/{me.name}/{me.incarnation}")
         )
+        if self._network.routers:
+            self._declared.append(
+                session.info.declare_transport_events_listener(
+                    self._calling(self._on_transport), history=False
+                )
+            )
         return known
 
     def _calling(self, callback: Callable[[Any], None]) -> Any:
@@ -77,6 +123,18 @@ class ZenohCarrier:
         return zenoh.handlers.Callback(callback, lambda: self._ended.put(threading.current_thread()))
 
     # ---- in threads of Zenoh
+
+    def _on_transport(self, event: Any) -> None:
+        routers = " or ".join(self._network.routers)
+        is_there = event.kind == zenoh.SampleKind.PUT
+        line = (
+            "connected to a router again"
+            if is_there
+            else f"warning: lost the router; trying to reach {routers}"
+        )
+        if self._loop is not None and not self._is_closed:
+            with suppress(RuntimeError):  # the loop is closed
+                self._loop.call_soon_threadsafe(self._log, line)
 
     def _on_datagram(self, sample: Any) -> None:
         self._pass_on("datagram", sample)
@@ -132,6 +190,9 @@ class ZenohCarrier:
 
     async def close(self) -> None:
         """Close the session."""
+        self._is_closed = True
+        if self._waiting is not None:
+            self._waiting.cancel()
         session, self._session = self._session, None
         if session is not None:
             await asyncio.to_thread(self._close, session)

@@ -28,8 +28,8 @@ fleet_options = with_options(
         PATH,
     ),
     option(
-        "--router ENDPOINT...",
-        "Router of the fleet, such as tls/lab.example:7447, for networks without multicast. Repeatable.",
+        "--router ADDRESS...",
+        "Router of the fleet, such as lab.example:7447, for networks without multicast. Repeatable.",
         name="fleet_routers",
     ),
     option(
@@ -105,7 +105,8 @@ def join_of(options: RunOptions, log: Callable[[str], None]) -> Join | None:
     network = Network(options.fleet, options.member, keys, tuple(options.fleet_routers))
     reach = "on this computer alone" if keys is None else f"with the keys in {keys}"
     log(f"[fleet] {network.member} in the fleet {network.fleet}, {reach}")
-    return joining(ZenohCarrier(network), network.member, read_rights(options.fleet_allow), network.lease)
+    carrier = ZenohCarrier(network, lambda line: log(f"[fleet] {line}"))
+    return joining(carrier, network.member, read_rights(options.fleet_allow), network.lease)
 
 
 def note_on_nodes(nodes: Sequence[NodeSpec]) -> str:
