@@ -76,6 +76,10 @@ def as_member(
     names = [each.name for each in project.nodes]
     if not names:
         raise usage_error(f"`{file}` declares no nodes", "add a section to the project: `node lab`")
+    from jacaros.fleet.names import check_name  # here: few runs are in a fleet
+
+    for name in names:
+        check_name("member", name)
     if node is None:
         return project, options
     if node not in names:

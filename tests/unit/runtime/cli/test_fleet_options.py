@@ -30,6 +30,7 @@ TOGETHER = (
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "house.jcm").write_text(HOUSE)
+    (tmp_path / "router.jcm").write_text("mas m { agent ann : a.asl  node router }")
     (tmp_path / "plain.jcm").write_text("mas plain { agent ann : a.asl }")
     (tmp_path / "a.asl").write_text("!go. +!go <- .my_name(Me); .print(Me).")
     monkeypatch.chdir(tmp_path)
@@ -41,11 +42,12 @@ def launched(monkeypatch: pytest.MonkeyPatch) -> list[tuple[Deployment, RunOptio
     """What would have been launched."""
     found: list[tuple[Deployment, RunOptions]] = []
 
-    def launch(project: Deployment, options: RunOptions, *_: Any) -> int:
+    def launch(project: Deployment, options: RunOptions, *_: Any, **__: Any) -> int:
         found.append((project, options))
         return 0
 
     monkeypatch.setattr(run, "launch", launch)
+    monkeypatch.setattr(run, "join_of", lambda *_: None)
     return found
 
 
@@ -101,6 +103,7 @@ def test_keys_and_routers_are_passed_on(
         (("house.jcm", "--node", "robt"), "unknown node `robt`", "did you mean `robot`?"),
         (("house.jcm", "--node", "x"), "unknown node `x`", "nodes of `house.jcm`: base, robot"),
         (("plain.jcm", "--node", "x"), "`plain.jcm` declares no nodes", "`node lab`"),
+        (("router.jcm", "--all-nodes"), "`router` cannot be the name of a member", "router1"),
         (("a.asl", "--all-nodes"), "`a.asl` declares no nodes", "`node lab`"),
         (("house.jcm", "--node", "base", "--all-nodes"), "--node excludes --all-nodes", "--node base"),
         (("house.jcm", "--node", "base", "--member", "x"), "--member excludes --node", "of its name"),

@@ -1,5 +1,6 @@
 """`.mas2j` project files."""
 
+import re
 from typing import ClassVar, Final
 
 from jacaros.agents.language.cursor import is_slip_of
@@ -76,11 +77,12 @@ class Mas2jReader(ProjectReader):
         return text
 
     def _host(self) -> WrittenName:
-        """Read the name of a host, which declares a node. That of the environment comes first."""
+        """Read a host, which declares a node. That of the environment comes first."""
         token = self.take("the name of a host", *_VALUE)
-        name, span = text_of(token), self.span_of(token)
+        host, span = text_of(token), self.span_of(token)
+        name = re.sub(r"[.:]", "-", host)  # members of a fleet have no dots in their names
         if name not in (node.name for node in self.part.nodes):
-            self.part.nodes.append(NodeSpec(name, span=span))
+            self.part.nodes.append(NodeSpec(name, host, span))
         return name, span
 
     # agents

@@ -11,7 +11,8 @@ from jacaros.runtime.mas.deployment import AgentSpec, Deployment, NodeSpec, Work
 from jacaros.runtime.mas.project.declarations import WrittenName
 
 _MAIN: Final = "/main"
-_NAME: Final = re.compile(r"\w[\w.-]*")
+_NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,47}")
+"""As for members of a fleet."""
 
 
 class Nodes:
@@ -30,7 +31,7 @@ class Nodes:
                 "error",
                 f"invalid name of a node: `{node.name}`",
                 node.span,
-                "use letters, digits, `_`, `-` and `.` only",
+                "use up to 48 letters, digits, `_` and `-`, beginning with a letter or digit",
             )
             for node in declared
             if _NAME.fullmatch(node.name) is None

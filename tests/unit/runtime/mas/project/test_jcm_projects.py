@@ -250,7 +250,7 @@ def test_a_mas2j_file_reports_what_has_no_effect(folder: Path, write: Write) -> 
               map(f,"b")) at "h0"
           executionControl: x.Control
           agents:
-              bob  at "h1" #2;   // two
+              bob  at "10.1.1.1:7447" #2;   // two
               alice [beliefs="at(home)",
                      goals="start(\\"a\\",\\"b\\")"]
                   agentArchClass x.A
@@ -269,8 +269,11 @@ def test_a_mas2j_file_reports_what_has_no_effect(folder: Path, write: Write) -> 
     alice = deployment.agents[2]
     assert (alice.beliefs, alice.goals) == ("at(home)", 'start("a","b")')
     assert deployment.agents[3].source_path == folder / "src" / "agt" / "bob.asl"
-    assert [(node.name, node.address) for node in deployment.nodes] == [("h0", None), ("h1", None)]
-    assert [each.node for each in deployment.agents] == ["h1", "h1", None, None]
+    assert [(node.name, node.address) for node in deployment.nodes] == [
+        ("h0", "h0"),
+        ("10-1-1-1-7447", "10.1.1.1:7447"),
+    ]
+    assert [each.node for each in deployment.agents] == ["10-1-1-1-7447"] * 2 + [None] * 2
     assert [each.message for each in deployment.ignored] == [
         "the infrastructure `Jade` has no effect: nodes distribute agents",
         "the environment `x.Env` has no effect: Java environments are not supported",

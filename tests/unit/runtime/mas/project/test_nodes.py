@@ -150,7 +150,12 @@ WRONG = [
         "write `node: robot`, or declare `w` outside of it",
     ),
     ("node base", "4:6", "duplicate node `base`", "the first one is at p.jcm:2"),
-    ("node a/b", "2:6", "invalid name of a node: `a/b`", "use letters, digits, `_`, `-` and `.` only"),
+    (
+        "node a/b",
+        "2:6",
+        "invalid name of a node: `a/b`",
+        "use up to 48 letters, digits, `_` and `-`, beginning with a letter or digit",
+    ),
     (
         "node n @ 10.1.1.1:port",
         "2:10",
