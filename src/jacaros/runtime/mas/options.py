@@ -40,7 +40,7 @@ class RunOptions(GraphAddress):
         fleet: the fleet to join; None for none.
         member: name of this system in the fleet. None: the name of the project.
         fleet_keys: folder with the keys of this member. None: the fleet is limited to this computer.
-        fleet_routers: addresses of routers of the fleet, such as ``tls/lab.example:7447``.
+        fleet_routers: addresses of routers of the fleet, such as ``192.168.1.5:7447``.
         fleet_allow: what other members may do here, such as ``lab=send,see``.
         explain: keep the history of the run from its start, for `Mas.explain` and ``.why``.
         plain: run plans and rules as the language defines them, without generated code. The default is what
