@@ -144,7 +144,7 @@ def test_version_and_help_are_printed(outcome: Outcome) -> None:
 
 
 def test_an_internal_error_prints_a_traceback_and_the_command(folder: Path, outcome, monkeypatch):
-    def broken(*_: object) -> int:
+    def broken(*_: object, **__: object) -> int:
         raise ZeroDivisionError("oh")
 
     monkeypatch.setattr("jacaros.runtime.cli.run.launch", broken)

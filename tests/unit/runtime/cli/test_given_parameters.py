@@ -177,7 +177,9 @@ def test_use_sim_time_selects_the_ros_clock(
     folder: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...], follows: bool
 ) -> None:
     seen: list[Any] = []
-    monkeypatch.setattr("jacaros.runtime.cli.run.launch", lambda project, options, *_: seen.append(options))
+    monkeypatch.setattr(
+        "jacaros.runtime.cli.run.launch", lambda project, options, *_, **__: seen.append(options)
+    )
     (folder / "a.asl").write_text("!a. +!a.", encoding="utf-8")
     call(["a.asl", "--ros", "ros2", *arguments])
     assert [(each.ros_clock, dict(each.parameters)) for each in seen] == [(follows, {})]
