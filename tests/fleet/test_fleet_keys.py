@@ -228,7 +228,7 @@ def test_the_router_names_its_address_and_ends_on_ctrl_c(tmp_path: Path) -> None
     with Player(command=["fleet", "router", "lab", "--listen", f"127.0.0.1:{port}"]) as router:
         router.until(rf"router of fleet lab: members connect to 127\.0\.0\.1:{port}; press Ctrl\+C to stop")
         with Player(command=["fleet", "router", "lab", "--listen", f"127.0.0.1:{port}"]) as second:
-            second.until(f"error: cannot listen on 127.0.0.1:{port}: Address already in use")
+            second.until(f"error: cannot listen on 127.0.0.1:{port}: address already in use")
         router.interrupt()
         assert router.process.wait(10) == 130
 

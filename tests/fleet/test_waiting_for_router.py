@@ -45,7 +45,7 @@ async def until(holds: Callable[[], bool]) -> None:
 
 def test_a_member_runs_without_its_router_and_joins_when_it_comes() -> None:
     fleet, address, lines = f"test-{uuid.uuid4().hex[:8]}", f"127.0.0.1:{free_port()}", list[str]()
-    waiting = f"warning: waiting for a router: no router: {address}: Connection refused"
+    waiting = f"warning: waiting for a router: {address}: connection refused"
     lost = f"warning: lost the router; trying to reach {address}"
 
     def router(stack: ExitStack) -> Player:

@@ -38,7 +38,7 @@ _ESTABLISHED = 3000
 
 
 class NoRouter(JacarosError):
-    """None of a member's routers answers."""
+    """None of a member's routers answers. The text says why, for each address."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +126,7 @@ def open_session(config: "zenoh.Config") -> "zenoh.Session":
         why = _reason(str(error))
     if json.loads(config.get_json("mode")) == "client":
         routers = [_shown(each) for each in json.loads(config.get_json("connect/endpoints"))]
-        raise NoRouter("no router: " + "; ".join(f"{each}: {_silence(each)}" for each in routers))
+        raise NoRouter("; ".join(f"{each}: {_silence(each)}" for each in routers))
     where = " and ".join(map(_shown, json.loads(config.get_json("listen/endpoints"))))
     help = "another program may use the port: `ss -ltnp` lists them"
     raise UsageError(f"error: cannot listen on {where}: {why}\n{help_line(help)}")
@@ -245,14 +245,14 @@ def _silence(address: str) -> str:
     try:
         socket.create_connection((host.strip("[]"), int(port)), 1.0).close()
     except OSError as error:
-        return error.strerror or "no answer"
+        return (error.strerror or "no answer").lower()
     return "what answers there is not a router of this fleet, or has keys of another authority"
 
 
 def _reason(text: str) -> str:
     """Return what went wrong, without the places in Zenoh's code that its errors name."""
     by_system = re.search(r"(\w[^:\[\]]*) \(os error \d+\)", text)
-    return printable(by_system[1] if by_system else re.sub(r" at \S+:\d+\.", "", text))
+    return printable(by_system[1].lower() if by_system else re.sub(r" at \S+:\d+\.", "", text))
 
 
 def _shown(endpoint: str) -> str:
