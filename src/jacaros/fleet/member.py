@@ -30,7 +30,9 @@ MEMORY = 60.0
 GOODBYE = 0.5
 """Seconds for which the end of a member waits until the others have what it said last."""
 _DEPARTED = 100
-"""Runs that have ended whose last datagrams are ignored, and others that may return."""
+"""Runs that have ended whose last datagrams are ignored."""
+_FORMER = 8
+"""Lost runs whose names others have taken, and which are known if they return after all."""
 _MOST = 1000
 """Other members, and different warnings, at most."""
 
@@ -250,7 +252,7 @@ class Member:
         """Make room for another run of a lost member."""
         self._stop_waiting(lost)
         self._former[lost.id] = lost
-        if len(self._former) > _DEPARTED:
+        if len(self._former) > _FORMER:
             oldest = next(iter(self._former))
             del self._former[oldest]
             self._departed.append(oldest)

@@ -367,7 +367,7 @@ class Mas:
             raise UsageError(
                 f"invalid agent name {spec.name!r}: it must not be empty or have spaces or control characters"
             )
-        if spec.name in system.directory.names():
+        if system.directory.find_here(spec.name) is not None:
             raise UsageError(f"duplicate agent name `{spec.name}`")
         if spec.join or spec.focus:
             spec = _placed(spec, self._run_environment.environment)
