@@ -75,6 +75,10 @@ class FleetAgents:
         """Return how an agent of another member is called here, such as ``bob`` or ``bob@lab``."""
         return self._called(name, member) if member in self._holders.get(name, ()) else f"{name}@{member}"
 
+    def of(self, member: str) -> list[str]:
+        """Return the names that the agents of another member have there."""
+        return [name for name, members in self._holders.items() if member in members]
+
     def find(self, name: str) -> Mailbox | None:
         """Return the mailbox of an agent, by its bare or full name. None: there is none, or more than one."""
         bare, at, member = name.rpartition("@")

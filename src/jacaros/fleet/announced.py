@@ -7,6 +7,7 @@ from jacaros.artifacts.env.errors import ArtifactId, UnknownArtifact
 from jacaros.artifacts.env.ports import Workspace
 from jacaros.fleet import protocol
 from jacaros.fleet.artifacts import ArtifactNames
+from jacaros.look.records.records import MemberRecord
 from jacaros.runtime.mas.directory import NAME as DIRECTORY_NAME
 from jacaros.runtime.mas.directory import ServiceDirectory
 from jacaros.runtime.mas.system import System
@@ -38,12 +39,22 @@ class Announced:
 
     def picture(self, epoch: int, knows: int) -> protocol.Here:
         """Return everything, for one other member."""
-        agents = [host.name for host in self._system.directory if host.name != DIRECTORY_NAME]
         workspaces = [
             (path, [self._data(each, workspace) for each in workspace.artifacts()])
             for path, workspace in self._workspaces.items()
         ]
-        return protocol.Here(epoch, knows, agents, list(self._services), workspaces, self.page)
+        return protocol.Here(epoch, knows, self._agents(), list(self._services), workspaces, self.page)
+
+    def _agents(self) -> list[str]:
+        return [host.name for host in self._system.directory if host.name != DIRECTORY_NAME]
+
+    def record(self, member: str) -> MemberRecord:
+        """Return what the recording of this member says of itself."""
+        return MemberRecord(member, "self", self._agents(), [*self._workspaces], page=self.page)
+
+    def watched(self) -> protocol.Watched:
+        """Return whether the run of this member is recorded, and the address of its page."""
+        return protocol.Watched(self._system.tracer is not None, self.page)
 
     def _agent(self, name: str, present: bool) -> None:
         if name != DIRECTORY_NAME:

@@ -13,9 +13,11 @@ from jacaros.fleet.agents import FleetAgents
 from jacaros.fleet.announced import Announced
 from jacaros.fleet.artifacts import ArtifactNames
 from jacaros.fleet.carrier import Carrier, MemberId
+from jacaros.fleet.causes import Causes
 from jacaros.fleet.channel import Malformed, read_packet
 from jacaros.fleet.peer import Peer
 from jacaros.fleet.rights import Rights
+from jacaros.look.records.records import MemberRecord
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.mas.directory import NAME as DIRECTORY_NAME
 from jacaros.runtime.mas.system import System
@@ -77,6 +79,7 @@ class Member:
         self._rival: MemberId | None = None
         self._names = ArtifactNames(me.incarnation, self._path_of)
         self._agents = FleetAgents(me.name, system.directory.find, self._warn, self._renamed)
+        self._causes = Causes(system, me.name)
         self._announced = Announced(system, self._names, self._tell)
         self._ends: list[Callable[[], object]] = []
 
@@ -109,6 +112,7 @@ class Member:
             raise UsageError(
                 f"the fleet has a member called {self.me.name} already; choose another name with --member"
             )
+        self._system.fleet = self
         self._pulse()
 
     async def _is_alone(self) -> bool:
@@ -123,6 +127,7 @@ class Member:
         for end in self._ends:
             end()
         self._ends.clear()
+        self._system.fleet = None
         there = [each for each in self.peers.values() if each.is_there]
         for peer in there:
             peer.say(protocol.Bye())
@@ -173,6 +178,22 @@ class Member:
     def _renamed(self, name: str) -> None:
         for peer in self.peers.values():
             peer.renamed(name)
+
+    # ---- what recordings and pages of this system need
+
+    def members(self) -> list[MemberRecord]:
+        """Return all members, this one first. See `jacaros.runtime.mas.fleet.Fleet`."""
+        others = (peer.record() for peer in self.peers.values() if peer.picture is not None)
+        return [self._announced.record(self.me.name), *others]
+
+    def traced(self, on: bool) -> None:
+        """Hear that this system is recorded, or no longer: others send causes while it is."""
+        self._tell(self._announced.watched())
+
+    def show_page(self, address: str) -> None:
+        """Tell the others the address of the live page of this system."""
+        self._announced.page = address
+        self._tell(self._announced.watched())
 
     def _tell(self, said: object) -> None:
         for peer in self.peers.values():
@@ -265,6 +286,7 @@ class Member:
             self._announced,
             self._agents,
             self._names,
+            self._causes,
             lambda datagram: self._carrier.send(member, datagram),
             self._rights.of(member.name),
             self._changed,

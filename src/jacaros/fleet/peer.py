@@ -14,11 +14,13 @@ from jacaros.fleet.agents import FleetAgents
 from jacaros.fleet.announced import Announced
 from jacaros.fleet.artifacts import ArtifactNames
 from jacaros.fleet.carrier import MemberId
+from jacaros.fleet.causes import Causes
 from jacaros.fleet.channel import Channel, Packet
 from jacaros.fleet.remote import Calls, RemoteWorkspace, RemoteWorkspaces
 from jacaros.fleet.rights import OPERATE, SEE, SEND, TELL_HOW
 from jacaros.fleet.served import Served
 from jacaros.fleet.wire import NotSendable, Wire
+from jacaros.look.records.records import MemberRecord
 from jacaros.runtime.errors import InternalError
 from jacaros.runtime.mas.system import System
 
@@ -43,6 +45,7 @@ class Peer:
         announced: what others are told of this member.
         agents: agents of all other members.
         names: names of artifacts.
+        causes: describes what led to something.
         transmit: sends a datagram to it.
         rights: what it may do here.
         changed: called with its new state: ``joined``, ``lost`` or ``left``.
@@ -62,6 +65,7 @@ class Peer:
         announced: Announced,
         agents: FleetAgents,
         names: ArtifactNames,
+        causes: Causes,
         transmit: Callable[[bytes], None],
         rights: Collection[str],
         changed: Callable[["Peer", str], None],
@@ -72,7 +76,7 @@ class Peer:
         self.picture: protocol.Here | None = None
         self.channel = Channel(system.clock, transmit, self._received)
         self._system, self._announced, self._agents, self._names = system, announced, agents, names
-        self._rights, self._changed = rights, changed
+        self._causes, self._rights, self._changed = causes, rights, changed
         self._epoch = 1
         self._its_epoch = 0
         self.state = ""
@@ -83,13 +87,14 @@ class Peer:
         wire = self._wire = Wire(names.name, names.find)
         self._calls = Calls(self, self.name)
         self._served = Served(
-            self._environment, names, wire, self, lambda agent: agents.called(agent, self.name)
+            self._environment, names, wire, self, lambda agent: agents.called(agent, self.name), causes
         )
         self.channel.when_drained = self._served.drained
-        self._remote = RemoteWorkspaces(id.incarnation, names, wire, self, self._calls)
+        self._remote = RemoteWorkspaces(id.incarnation, names, wire, self, self._calls, causes)
         self._workspaces: dict[str, tuple[RemoteWorkspace, Callable[[], None]]] = {}
         self._handlers: dict[type, Callable[[Any], None]] = {
             protocol.Here: self._on_here,
+            protocol.Watched: self._on_watched,
             protocol.Bye: lambda _: self.leave(),
             protocol.AgentNews: self._if_known(self._on_agent),
             protocol.ServiceNews: self._if_known(self._on_service),
@@ -171,7 +176,11 @@ class Peer:
             return
         self.is_there = True
         self.channel.find()
+        self._introduce()
+
+    def _introduce(self) -> None:
         self.say(self._announced.picture(self._epoch, self._its_epoch))
+        self.say(self._announced.watched())
 
     def lose(self, state: str = "lost") -> None:
         """It does not answer."""
@@ -207,6 +216,22 @@ class Peer:
         for path in list(self._workspaces):
             self._on_workspace(protocol.WorkspaceNews(path, False))
         self._names.forget_run(self.id.incarnation)
+        self._causes.want(self.name, False)
+
+    def record(self) -> MemberRecord:
+        """Return what is known of it."""
+        state = "joined" if self.is_there and self.picture is not None else "lost"
+        clocks, page = self.channel.clocks, "" if self.picture is None else self.picture.page
+        delay = None if clocks.delay is None else round(clocks.delay, 6)
+        return MemberRecord(
+            self.name,
+            state,
+            self._agents.of(self.name),
+            [*self._workspaces],
+            delay,
+            round(clocks.offset, 6),
+            page,
+        )
 
     # ---- what it has
 
@@ -217,7 +242,7 @@ class Peer:
         if known != said.epoch:
             self._break()  # it lost this member, even if that has not noticed, and what was begun on both sides
             if said.knows == self._epoch:
-                self.say(self._announced.picture(self._epoch, self._its_epoch))
+                self._introduce()
         self._is_known = True
         self._agents.came(self.name, self)
         for name in said.agents:
@@ -234,6 +259,11 @@ class Peer:
                 self._workspaces[path][0].told_all(artifacts)
         self.picture = said
         self._become("joined")
+
+    def _on_watched(self, said: protocol.Watched) -> None:
+        self._causes.want(self.name, said.records)
+        if self.picture is not None:
+            self.picture.page = said.page
 
     def _become(self, state: str) -> None:
         if state != self.state:
@@ -315,7 +345,13 @@ class Peer:
         except NotSendable as error:
             raise Failure((_ERROR, atom("not_sendable")), (_ERROR_MSG, String(str(error)))) from None
         said = protocol.Message(
-            message.performative, message.sender, receiver, content, message.id, message.in_reply_to, ""
+            message.performative,
+            message.sender,
+            receiver,
+            content,
+            message.id,
+            message.in_reply_to,
+            self._causes.of_step(message.sender),
         )
         if message.performative.startswith(_ASKING):
             self._note_question(message)
@@ -352,7 +388,11 @@ class Peer:
         if self._system.directory.find_here(said.receiver) is None:
             return "receiver_not_found"  # even if another member has it: messages are not passed on
         try:
-            return "" if self._system.deliver(message) else "receiver_not_found"
+            return (
+                ""
+                if self._system.deliver(message, self._causes.arrived(said.cause))
+                else "receiver_not_found"
+            )
         except Failure:
             return "mailbox_full"
 

@@ -6,6 +6,8 @@ import msgspec
 
 ArtifactData = tuple[int, str, str, str | None, list[str]]
 """Number, name, type, creator and operations of an artifact."""
+StepData = tuple[str, str, str, int]
+"""A step: full name of its agent, what its plan is for, file and line. See `jacaros.runtime.trace.Origin`."""
 PropertyData = tuple[int, str, Any, Any]
 """Key, name, values and annotations of a property."""
 
@@ -34,6 +36,13 @@ class Here(_Said):
     page: str
 
 
+class Watched(_Said):
+    """Whether the member records its run, so that it needs causes, and the address of its live page (or empty)."""
+
+    records: bool
+    page: str
+
+
 class Bye(_Said):
     """The member ends."""
 
@@ -54,7 +63,7 @@ class ServiceNews(_Said):
 
 
 class Message(_Said):
-    """A message of an agent. ``cause`` is what its plan was, for explanations."""
+    """A message of an agent. ``cause`` is the step that sent it, for explanations."""
 
     performative: str
     sender: str
@@ -62,7 +71,7 @@ class Message(_Said):
     content: Any
     id: str
     in_reply_to: str | None
-    cause: str
+    cause: StepData | None
 
 
 class Returned(_Said):
@@ -92,7 +101,7 @@ class ArtifactNews(_Said):
 
 
 class Execute(_Said):
-    """Run an operation."""
+    """Run an operation. ``cause`` is the step that asks for it."""
 
     call: int
     artifact: int
@@ -103,7 +112,7 @@ class Execute(_Said):
     urgency: int
     policy: str
     yields: bool
-    cause: str
+    cause: StepData | None
 
 
 class Create(_Said):
@@ -183,6 +192,7 @@ class Observed(_Said):
         signals: names and arguments.
         properties: new and changed ones.
         removed: keys of removed ones.
+        cause: the step that led to it, if that is known.
     """
 
     observer: int
@@ -190,6 +200,7 @@ class Observed(_Said):
     signals: list[tuple[str, Any]]
     properties: list[PropertyData]
     removed: list[int]
+    cause: StepData | None
 
 
 class Ask(_Said):
@@ -207,7 +218,7 @@ class Answer(_Said):
 
 
 Said = (
-    Here | Bye | AgentNews | ServiceNews | Message | Returned | WorkspaceNews | ArtifactNews | Execute | Create
+    Here | Watched | Bye | AgentNews | ServiceNews | Message | Returned | WorkspaceNews | ArtifactNews | Execute | Create
     | CreateWorkspace | Dispose | Focus | StopFocus | Link | Handle | Ended | Observed | Ask | Answer
 )  # fmt: skip
 """Anything that a member says."""

@@ -18,6 +18,7 @@ from jacaros.artifacts.env.values import Out, Structure
 from jacaros.artifacts.kernel.faults import not_available
 from jacaros.fleet import protocol
 from jacaros.fleet.artifacts import ArtifactNames
+from jacaros.fleet.causes import Causes
 from jacaros.fleet.served import Line, not_sendable
 from jacaros.fleet.wire import NotSendable, Wire
 from jacaros.runtime.files.texts import aside
@@ -115,13 +116,17 @@ class RemoteWorkspaces:
         wire: converts values.
         line: the way to the member.
         calls: calls to it.
+        causes: describes what led to something.
 
     Attributes:
         present: whether the member answers.
     """
 
-    def __init__(self, run: str, names: ArtifactNames, wire: Wire, line: Line, calls: Calls) -> None:
+    def __init__(
+        self, run: str, names: ArtifactNames, wire: Wire, line: Line, calls: Calls, causes: Causes
+    ) -> None:
         self.run, self.names, self.wire, self.line, self.calls = run, names, wire, line, calls
+        self.causes = causes
         self.present = True
         self.focuses: dict[tuple[ArtifactId, Observer], _Focus] = {}
         self._by_number: dict[int, _Focus] = {}
@@ -181,7 +186,7 @@ class RemoteWorkspaces:
             known[key] = new
         if signals or removed or changed or added:
             observation = Observation(focus.artifact, signals, tuple(changed), tuple(added), removed)
-            focus.observer.observe(observation)
+            focus.observer.observe(self.causes.observed(observation, seen.cause))
 
     def lose(self) -> None:
         """The member does not answer: nothing is known of its artifacts."""
@@ -327,7 +332,7 @@ class RemoteWorkspace(ports.Workspace):
             request.on_done(self._all.outcome(ended))
 
         def said(call: int) -> protocol.Execute:
-            number, cause = self._all.names.number(request.artifact), request.cause
+            number, cause = self._all.names.number(request.artifact), self._all.causes.of_request(request)
             return protocol.Execute(
                 call,
                 number,
@@ -338,7 +343,7 @@ class RemoteWorkspace(ports.Workspace):
                 request.urgency,
                 request.policy,
                 request.yields,
-                cause.what if cause is not None else "",
+                cause,
             )
 
         return self._ask(said, done)

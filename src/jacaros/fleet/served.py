@@ -12,7 +12,9 @@ from jacaros.artifacts.env.property import ObservableProperty, Observation
 from jacaros.artifacts.env.values import Out, Structure
 from jacaros.fleet import protocol
 from jacaros.fleet.artifacts import ArtifactNames
+from jacaros.fleet.causes import Causes
 from jacaros.fleet.wire import ATOM, LIST, NotSendable, Wire
+from jacaros.runtime.trace import Cause
 
 _SIGNALS = 1000
 """Signals of one observer that are kept meanwhile."""
@@ -43,9 +45,11 @@ class _Watching:
         self._properties: dict[int, ObservableProperty] = {}
         self._removed: dict[int, None] = {}
         self._signals: list[tuple[str, object]] = []
+        self._cause: Cause | None = None
 
     def observe(self, observation: Observation) -> None:
         """Take in what was published, and send it. On a slow link it waits: only the newest values go then."""
+        self._cause = observation.cause
         for new in (*(after for _, after in observation.changed), *observation.added):
             self._properties[new.key] = new
         for old in observation.removed:
@@ -76,9 +80,10 @@ class _Watching:
             (each.key, each.name, data(list(each.values), each.name), data(list(each.annotations), each.name))
             for each in self._properties.values()
         ]
-        said = protocol.Observed(self._number, self._whole, self._signals, properties, list(self._removed))
+        cause, removed = self._served.causes.of(self._cause), list(self._removed)
+        said = protocol.Observed(self._number, self._whole, self._signals, properties, removed, cause)
         self._whole = False
-        self._properties, self._removed, self._signals = {}, {}, []
+        self._properties, self._removed, self._signals, self._cause = {}, {}, [], None
         self._served.line.say(said)
 
 
@@ -91,6 +96,7 @@ class Served:
         wire: converts values.
         line: the way to the other member.
         called: returns how an agent of that member is called here, so that none is taken for one of this member.
+        causes: describes what led to something.
 
     Attributes:
         late: observers whose observations wait until less is under way.
@@ -103,8 +109,9 @@ class Served:
         wire: Wire,
         line: Line,
         called: Callable[[str], str],
+        causes: Causes,
     ) -> None:
-        self.names, self.line = names, line
+        self.names, self.line, self.causes = names, line, causes
         self.late: dict[_Watching, None] = {}
         self._environment, self._wire, self._called = environment, wire, called
         self._begun: set[int] = set()
@@ -158,9 +165,8 @@ class Served:
         def done(outcome: OperationOutcome) -> None:
             self._end(asked.call, outcome, outs)
 
-        request = OperationRequest(
-            artifact, asked.operation, arguments, self._caller(asked.agent), None, done
-        )
+        agent, cause = self._caller(asked.agent), self.causes.arrived(asked.cause)
+        request = OperationRequest(artifact, asked.operation, arguments, agent, cause, done)
         request.timeout, request.urgency = asked.timeout, asked.urgency
         request.policy, request.yields = asked.policy, asked.yields  # type: ignore[assignment]
         self._keep(asked.call, self._environment().execute(request))

@@ -10,7 +10,8 @@ class Cause(NamedTuple):
     Attributes:
         id: number of this link, unique in the run.
         parent: number of the link that led to it, 0 at the beginning of a chain.
-        kind: stage of the chain: ``sample``, ``property``, ``signal``, ``event``, ``act``, ``operation`` or ``command``.
+        kind: stage of the chain: ``sample``, ``property``, ``signal``, ``event``, ``act``, ``operation``, ``command``, or
+            ``remote`` for a step of an agent of another system.
         what: short description.
     """
 
@@ -18,6 +19,21 @@ class Cause(NamedTuple):
     parent: int
     kind: str
     what: str
+
+
+class Origin(NamedTuple):
+    """The step of an agent that led to something, as other systems of a fleet hear of it.
+
+    Attributes:
+        agent: name of the agent.
+        event: what its plan is for, such as ``+!go(dock)``; empty if unknown.
+        file, line: location of the step; ``""`` and 0 if unknown.
+    """
+
+    agent: str
+    event: str = ""
+    file: str = ""
+    line: int = 0
 
 
 class Tracer(Protocol):
@@ -32,6 +48,9 @@ class Tracer(Protocol):
             parent: the previous link, None at the beginning of a chain.
             about: what the link is about; read only if the link is recorded.
         """
+
+    def origin(self, cause: Cause) -> Origin | None:
+        """Return the step of an agent that led to a recent link; None if none did, or it is unknown."""
 
     def received_message(self, topic: str, message: Any) -> Cause:
         """Make the first link of a chain, of kind ``sample``: our node has received *message*."""

@@ -112,6 +112,21 @@ class LogRecord(EventRecord):
     text: str
 
 
+class MemberRecord(EventRecord):
+    """of a fleet: `member`, a system; `state` (`self`: the recorded system; `joined`; `lost`: it does not answer; `left`);
+    `agents` and `workspaces`, lists of names; `delay` there and back and `offset` by which its clock is ahead, in seconds;
+    `page`: the address of its live page, without the token. Repeated when something of it has changed
+    """
+
+    member: str
+    state: str
+    agents: Sequence[str] = ()
+    workspaces: Sequence[str] = ()
+    delay: float | None = None
+    offset: float = 0.0
+    page: str = ""
+
+
 class EndedRecord(EventRecord):
     """`code`: the exit code"""
 

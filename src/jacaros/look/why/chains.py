@@ -79,6 +79,9 @@ def _fact(past: Past, link: ChainLink) -> Fact:
             written = source_line(past, file, line)
             step = f"`{written}`" if written else cause.what.removeprefix(f"{agent} ")
             return Fact("act", f"step {step}{f' of {plan_name(plan)}' if plan else ''}", t, agent, file, line)
+        case "remote", _:
+            what = f"step of its plan for `{shown(cause.what)}`" if cause.what else "a step of its program"
+            return Fact("remote", what, t, agent, *place_of(cause))
         case "operation", _:
             known = past.operations.get(cause.id)
             artifact = f" of {cause.artifact}" if cause.artifact else ""

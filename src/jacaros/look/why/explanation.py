@@ -11,7 +11,8 @@ class Fact:
 
     Attributes:
         kind: ``command``, ``operation``, ``act``, ``event``, ``property``, ``signal``, ``sample``,
-            ``message``, ``plan``, ``goal``, ``intention``, ``belief`` or ``note``.
+            ``message``, ``plan``, ``goal``, ``intention``, ``belief``, ``note``, or ``remote`` for a step of an agent of
+            another system.
         text: the text.
         t: seconds since the run began, or None.
         agent: agent it concerns; empty for facts of the environment.

@@ -22,6 +22,7 @@ from jacaros.agents.terms.substitution import is_ground, rename
 from jacaros.agents.terms.values import BY_SELF, Annotated, String, Term, atom, functor
 from jacaros.runtime.mas.agents.host import AgentHost
 from jacaros.runtime.mas.console import entered
+from jacaros.runtime.trace import Cause
 
 
 class Mailbox(Protocol):
@@ -146,7 +147,8 @@ class Mailboxes:
         find_other: the same for other participants. Called after *find*.
 
     Attributes:
-        observer: called with each delivered message, or None.
+        observer: called with each delivered message and what led to it in another system (None: its sender is here), or
+            None.
     """
 
     def __init__(
@@ -156,13 +158,17 @@ class Mailboxes:
     ) -> None:
         self._find = find
         self._find_other = find_other
-        self.observer: Callable[[SpeechAct], None] | None = None
+        self.observer: Callable[[SpeechAct, Cause | None], None] | None = None
 
-    def deliver(self, message: SpeechAct) -> bool:
+    def deliver(self, message: SpeechAct, cause: Cause | None = None) -> bool:
         """Put *message* into the mailbox of its receiver. Return False if the receiver is unknown.
 
         Variables are renamed apart, and sets, maps and queues are copied, so that the receiver shares no state with the
         sender.
+
+        Args:
+            message: the message.
+            cause: what led to it in another system.
 
         Raises:
             Failure: the mailbox is full. The sending step fails.
@@ -175,7 +181,7 @@ class Mailboxes:
         if not message.flat:
             message = _parted(message)
         if self.observer is not None:
-            self.observer(message)
+            self.observer(message, cause)
         receiver.receive(message)
         return True
 

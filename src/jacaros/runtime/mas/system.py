@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from jacaros.runtime.input import LineInput
     from jacaros.runtime.mas.debugging.debugger import Debugger
     from jacaros.runtime.mas.environment import RunEnvironment
+    from jacaros.runtime.mas.fleet import Fleet
     from jacaros.runtime.mas.history.history import History
     from jacaros.runtime.trace import Tracer
 
@@ -73,6 +74,8 @@ class System:
         listen_to_log: calls a function with text and level of each line that is logged from now on. Returns a function that
             ends this.
         services: the directory facilitator. May be replaced before the run starts.
+        tracer: creates the causes; None while nothing observes the run.
+        fleet: the fleet that the system has joined, or None.
     """
 
     def __init__(
@@ -102,7 +105,8 @@ class System:
         self.scheduler = Scheduler(clock, self.idleness.look, self.fail, idle_work=self._compile_ahead)
         self.idleness.turns = self.scheduler
         self._run_environment: RunEnvironment | None = None
-        self._tracer: Tracer | None = None
+        self.tracer: Tracer | None = None
+        self.fleet: Fleet | None = None
         self._situated: list[Callable[[Environment], None]] = []
         self._closers: list[Callable[[], Awaitable[None]]] = []
         self._join = join
@@ -170,8 +174,10 @@ class System:
 
     def trace(self, tracer: "Tracer | None") -> None:
         """Pass the causes of events to *tracer* from now on: messages, operations, properties, actions. None ends this."""
-        self._tracer = tracer
+        self.tracer = tracer
         self.ros.trace(tracer)
+        if self.fleet is not None:
+            self.fleet.traced(tracer is not None)
         if self._run_environment is not None:
             self._run_environment.environment.tracer = tracer
 
@@ -292,7 +298,7 @@ class System:
             self._run_environment = RunEnvironment(
                 self.deployment, self._modules, self.clock, resources, self.console, self.activity, self.fail
             )
-            self._run_environment.environment.tracer = self._tracer
+            self._run_environment.environment.tracer = self.tracer
             for callback in tuple(self._situated):
                 callback(self._run_environment.environment)
         return self._run_environment

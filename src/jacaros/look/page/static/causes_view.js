@@ -47,7 +47,7 @@ export class CausesView {
   place(link, key) {
     const place = linkPlace(link, this.minds), parts = ["at ", momentButton(this.context, link.t, key)];
     if (place) parts.push(" · ", placeButton(this.context, place, key));
-    if (link.agent) parts.push(" · ", keyed(`${key} agent`, button("jump", () => this.openAgent(link), link.agent)));
+    if (link.agent && link.kind !== "remote") parts.push(" · ", keyed(`${key} agent`, button("jump", () => this.openAgent(link), link.agent)));
     return element("p", "where", ...parts);
   }
 
@@ -92,7 +92,7 @@ export class CausesView {
 
   choose(link) {
     const { agent, artifact, robot } = this.context.selection.current;
-    this.context.selection.choose({ agent: link.agent ?? agent, artifact, robot, cause: link.id });
+    this.context.selection.choose({ agent: link.kind === "remote" ? agent : link.agent ?? agent, artifact, robot, cause: link.id });
   }
 
   /** The last links of what is selected, or of the run. */

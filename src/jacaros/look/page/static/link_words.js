@@ -10,14 +10,16 @@ const WORDS = {
   act: (link, minds) => `plan step ${stepText(link, minds)}`,
   operation: (link, minds, t) => `operation ${link.call ?? within(link)}${of(link.artifact)}${outcome(link, t)}`,
   command: commandText,
+  remote: (link) => `plan step of ${link.agent}${link.what ? `, for ${link.what}` : ""}${link.file ? ` (${placeName(link)})` : ""}`,
   message: (link) => (link.performative ? `message from ${link.from} to ${link.to}: ${link.performative} ${link.content}` : link.what),
 };
 
 /** A link in words, as it was at time `t`; `minds` knows the programs. */
 export function linkWords(link, minds, t) { return (WORDS[link.kind] ?? ((each) => `${each.kind} ${each.what}`))(link, minds, t); }
 
-/** Where in a program a link arose: file and line; null when it did elsewhere. */
+/** Where in a program of this run a link arose: file and line; null when it did elsewhere. */
 export function linkPlace(link, minds) {
+  if (link.kind === "remote") return null;
   if (link.file && link.line) return { file: link.file, line: link.line };
   const plan = link.kind === "event" && minds.plan(link.agent, link.chosen);
   return plan?.line ? { file: plan.file, line: plan.line } : null;

@@ -7,7 +7,7 @@ from jacaros.look.records import records
 from jacaros.look.records.records import RecordSink
 from jacaros.look.records.words import call_text, limited, message_text, request_text
 from jacaros.runtime.clock import Clock
-from jacaros.runtime.trace import Cause
+from jacaros.runtime.trace import Cause, Origin
 
 _GENERATION = 4096
 """Number of causes that are kept at least, until something needs them; at most twice as many."""
@@ -17,6 +17,7 @@ the robot, are recorded, too.
 """
 RECORDED = ("event", "message")
 """Links with records of their own: deliberations and messages. Their causes are recorded with these."""
+_WITH_ORIGIN = ("act", "operation", "remote")
 LARGE = 4096
 """Number of elements in the field ``data`` from which on a message, such as an image, is not kept."""
 
@@ -105,6 +106,8 @@ class CauseRecords:
         self._old: dict[int, CauseLink] = {}
         self._samples: set[int] = set()
         """Messages that have led to something. Each is kept, or recorded, once."""
+        self._origins: dict[int, Origin] = {}
+        """The steps that led to operations, by their links."""
 
     def link(self, kind: str, what: str, parent: Cause | None = None, about: Any = None) -> Cause:
         """Create the next link of a chain. See `jacaros.runtime.trace.Tracer`."""
@@ -119,7 +122,29 @@ class CauseRecords:
             self._old, self._young = self._young, {}
         if kind in ("act", "operation"):
             self.need(made)
+        if kind in _WITH_ORIGIN:
+            self._note_origin(made, parent, about)
         return made
+
+    def _note_origin(self, made: Cause, parent: Cause | None, about: Any) -> None:
+        origin = about
+        if made.kind == "act":
+            agent, act = about
+            place, event = (
+                act.place or {},
+                parent.what if parent is not None and parent.kind == "event" else "",
+            )
+            origin = Origin(agent, event, place.get("file", ""), place.get("line", 0))
+        elif made.kind == "operation":
+            origin = None if parent is None else self._origins.get(parent.id)
+        if origin is not None:
+            self._origins[made.id] = origin
+            if len(self._origins) > _GENERATION:
+                del self._origins[next(iter(self._origins))]
+
+    def origin(self, cause: Cause) -> Origin | None:
+        """Return the step that led to a recent link. See `jacaros.runtime.trace.Tracer`."""
+        return self._origins.get(cause.id) or self._origins.get(cause.parent)
 
     def received_message(self, topic: str, message: Any) -> Cause:
         """Create the first link of a chain. See `jacaros.runtime.trace.Tracer`."""
@@ -241,6 +266,10 @@ def _act_details(_: str, about: Any) -> dict[str, Any]:
     return {"agent": agent, "intention": act.intention, **(act.place or {})}
 
 
+def _origin_details(_: str, origin: Origin) -> dict[str, Any]:
+    return {"agent": origin.agent, "file": origin.file, "line": origin.line}
+
+
 _DETAILS: Mapping[str, Callable[[str, Any], dict[str, Any]]] = {
     "sample": _message_details,
     "command": _message_details,
@@ -248,5 +277,6 @@ _DETAILS: Mapping[str, Callable[[str, Any], dict[str, Any]]] = {
     "signal": _change_details,
     "operation": _operation_details,
     "act": _act_details,
+    "remote": _origin_details,
 }
 """Further fields of a record, for what a link of a kind is about."""

@@ -21,7 +21,7 @@ from jacaros.agents.mind.state.pending import (
     is_action,
 )
 from jacaros.agents.mind.state.plan import Plan, StepInfo
-from jacaros.agents.mind.state.triggers import literal_of
+from jacaros.agents.mind.state.triggers import Goal, literal_of
 from jacaros.agents.terms.substitution import is_ground
 from jacaros.agents.terms.values import Term, annotations_of
 from jacaros.look.records import records
@@ -207,6 +207,13 @@ def place_of(intention: Intention, numbers: PlanNumbers) -> dict[str, Any]:
     frame = intention.frames[-1]
     span, plan = _span(frame), {"plan": numbers[frame[PLAN]]}
     return plan if span is None else {**plan, "file": span.file.name, "line": span.line}
+
+
+def place_of_step(intention: Intention) -> tuple[Goal, str, int]:
+    """Return the goal or event that the current step of an intention is for, its file and line."""
+    frame = intention.frames[-1]
+    span = _span(frame)
+    return (frame[GOAL], *((frame[PLAN].file, 0) if span is None else (span.file.name, span.line)))
 
 
 def step_of(frame: Frame) -> str:

@@ -18,7 +18,7 @@ from jacaros.look.records.words import shown, shown_event
 from jacaros.runtime.mas.history.causes import CauseRecords
 from jacaros.runtime.mas.history.intentions import IntentionRecords, Looks, Moments, place_of
 from jacaros.runtime.mas.history.programs import ProgramRecords
-from jacaros.runtime.trace import Cause, Tracer
+from jacaros.runtime.trace import Cause
 
 PER_SECOND = 10
 """Maximum number of contexts of one agent that are examined per second of the run's clock, at about 50 µs each."""
@@ -82,14 +82,18 @@ class MessageRecords:
         tell: takes the records.
     """
 
-    def __init__(self, links: Tracer, cause: Callable[[str], Cause | None], tell: RecordSink) -> None:
+    def __init__(self, links: CauseRecords, cause: Callable[[str], Cause | None], tell: RecordSink) -> None:
         self._links, self._cause, self._tell = links, cause, tell
         self._known: dict[str, Cause] = {}
 
-    def sent(self, message: SpeechAct) -> None:
-        """Record a delivered message."""
+    def sent(self, message: SpeechAct, cause: Cause | None = None) -> None:
+        """Record a delivered message. *cause* led to it in another system."""
+        if cause is not None:
+            self._links.need(cause)
+        else:
+            cause = self._cause(message.sender) or self._known.get(message.in_reply_to or "")
         told = f"{message.sender} -> {message.receiver} {message.performative} {shown(message.content)}"
-        link = self._links.link("message", told, self._cause(message.sender))
+        link = self._links.link("message", told, cause)
         self._known[message.id] = link
         if len(self._known) > KEPT:
             del self._known[next(iter(self._known))]
