@@ -61,6 +61,8 @@ class RunView:
         access = Access(address, token)
         self._server = LiveServer(bound_socket(address, port), access, self.watcher)
         self.address = self._server.address
+        self._open_address = self.address.removesuffix(f"{access.token}/")
+        """Without the token, which other members of a fleet do not get."""
         self._explaining = asyncio.Lock()
         self._rested_at = 0.0
         self._serving: asyncio.Task[None] | None = None
@@ -78,11 +80,16 @@ class RunView:
         # The world may be created later, when an agent first needs a robot.
         system.ros.watch_world(lambda world: self._let_change(world, watch.look))
         self._debug()
+        self._show_page(self._open_address)
         with outside_run():  # a paused run must be able to continue
             self._serving = asyncio.create_task(self._serve())
         system.close_last(self.close)  # pages show the end of the run
         # A task that is cancelled before its first step executes no `finally`.
         self._serving.add_done_callback(lambda _: self._server.release())
+
+    def _show_page(self, address: str) -> None:
+        if self._system.fleet is not None:
+            self._system.fleet.show_page(address)
 
     def _let_change(self, world: World, look: Callable[[], None]) -> None:
         self.commands.add(world_commands(self._system, world, look), changes=True)
@@ -98,6 +105,7 @@ class RunView:
     async def close(self) -> None:
         """Send waiting records, and disconnect the pages."""
         self._end_debug()
+        self._show_page("")
         if self._serving is not None:
             self._serving.cancel()
             with contextlib.suppress(asyncio.CancelledError):

@@ -8,6 +8,8 @@ import { ControlsView } from "./controls_view.js";
 import { Debugging } from "./debugging.js";
 import { isDark, setText } from "./elements.js";
 import { Environment } from "./environment.js";
+import { Fleet } from "./fleet.js";
+import { FleetView } from "./fleet_view.js";
 import { GraphView } from "./graph_view.js";
 import { listenToKeys } from "./keys.js";
 import { Links } from "./links.js";
@@ -46,8 +48,8 @@ export const NO_COMMANDS = {
  */
 export function startPage({ live, commands }) {
   const world = new World(), links = new Links(), log = new Log(), minds = new Minds();
-  const environment = new Environment(), messages = new Messages(), causes = new Causes(), debugging = new Debugging();
-  const models = [world, links, log, minds, environment, messages, causes, debugging];
+  const environment = new Environment(), messages = new Messages(), causes = new Causes(), debugging = new Debugging(), fleet = new Fleet();
+  const models = [world, links, log, minds, environment, messages, causes, debugging, fleet];
   const run = new Run(models), selection = new Selection(), time = new Time(run, live);
   const context = { run, selection, commands, time, open: (panel) => tabs.open(panel), actions: new Actions() };
   context.breakpoints = new Breakpoints(context, debugging);
@@ -58,6 +60,7 @@ export function startPage({ live, commands }) {
     [at("program"), new ProgramView(at("program"), context, minds)],
     [at("artifacts"), new ArtifactsView(at("artifacts"), context, environment)],
     [at("messages"), new MessagesView(at("messages"), context, messages)],
+    [at("fleet"), new FleetView(at("fleet"), context, fleet)],
     [at("graph"), new GraphView(at("graph"), context, environment)],
     [at("causes"), new CausesView(at("causes"), context, { causes, minds, links, environment })],
   ], context);

@@ -16,8 +16,10 @@ from jacaros.runtime.clock import Clock, Timer
 from jacaros.runtime.mas.agents.lifecycle import AgentLifecycle
 from jacaros.runtime.mas.deployment import Deployment
 from jacaros.runtime.mas.directory import Directory, Mailboxes
+from jacaros.runtime.mas.fleet import Fleet
 from jacaros.runtime.mas.history.causes import CauseRecords
 from jacaros.runtime.mas.history.environment import EnvironmentRecords, robot_finder
+from jacaros.runtime.mas.history.fleet import FleetRecords
 from jacaros.runtime.mas.options import RunOptions
 from jacaros.runtime.mas.ros_graph import RosGraph
 from jacaros.runtime.mas.scheduler import Scheduler
@@ -44,6 +46,7 @@ class ObservedSystem(Protocol):
     ros: RosGraph
     deployment: Deployment
     options: RunOptions
+    fleet: Fleet | None
 
     def trace(self, tracer: Tracer | None) -> None:
         """Let *tracer* create the causes. None ends this."""
@@ -74,6 +77,7 @@ class RunEnvironmentRecords:
         self.causes = CauseRecords(system.clock, beginning, tell, self._moving.listener_of)
         self._environment = EnvironmentRecords(system.clock, tell, robot_finder(self._robots))
         self._graph = GraphRecords(tell, self.causes)
+        self._fleet = FleetRecords(lambda: system.fleet, tell)
         self._timer: Timer | None = None
         self._looked = system.clock.elapsed
         self._looking: asyncio.Task[None] | None = None
@@ -88,6 +92,7 @@ class RunEnvironmentRecords:
         ends.callback(self._environment.end)
         ends.callback(system.when_situated(self._environment.observe))
         ends.callback(self._stop_looking)
+        ends.callback(self._fleet.watch())
         self._look()
 
     def _stop_looking(self) -> None:
@@ -101,6 +106,7 @@ class RunEnvironmentRecords:
         self._environment.flush()
         self.causes.flush()
         self._moving.look()
+        self._fleet.look()
         backend, passed = self._system.ros.joined, self._clock.elapsed - self._looked
         is_looking = self._looking is not None and not self._looking.done()
         if backend is not None and passed >= self._graph.pause and not is_looking:
