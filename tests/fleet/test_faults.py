@@ -265,7 +265,7 @@ VALID: list[Any] = [
     protocol.Link(6, 1, "next", 1),
     protocol.Handle(1, "cancel"),
     protocol.Ended(1, True, None, None, [[1]], None),
-    protocol.Observed(1, True, [("s", [2])], [(1, "p", [2], [2])], [1]),
+    protocol.Observed(1, True, [("s", [2])], [(1, "p", [2], [2])], [1], None),
     protocol.Ask(7, "status"),
     protocol.Answer(7, {}),
 ]
