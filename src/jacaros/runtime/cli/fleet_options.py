@@ -24,7 +24,8 @@ fleet_options = with_options(
     option("--member NAME", "Name of this system in the fleet (default: that of the node or the file)."),
     option(
         "--fleet-keys DIR",
-        "Folder with the keys of this member. Without keys, a fleet is limited to this computer.",
+        "Folder with the keys of this member; with --all-nodes, a folder with one for each node. Without keys, a fleet is "
+        "limited to this computer.",
         PATH,
     ),
     option(

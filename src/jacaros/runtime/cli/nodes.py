@@ -114,8 +114,15 @@ async def _print(output: StreamReader, name: str, stream: TextIO) -> None:
         print(f"[{name}] {rest.decode(errors='replace')}", file=stream, flush=True)
 
 
-def arguments_of_nodes(given: Sequence[str], outputs: RequestedOutputs) -> Callable[[str], Sequence[str]]:
-    """Return the function from a node to its arguments: those *given* to all, with output files of its own.
+def arguments_of_nodes(
+    given: Sequence[str], outputs: RequestedOutputs, keys: Path | None = None
+) -> Callable[[str], Sequence[str]]:
+    """Return the function from a node to its arguments: those *given* to all, with output files and keys of its own.
+
+    Args:
+        given: the arguments of the command.
+        outputs: the requested outputs.
+        keys: folder with a folder of keys for each node.
 
     Raises:
         UsageError: an output can be had only once.
@@ -126,7 +133,8 @@ def arguments_of_nodes(given: Sequence[str], outputs: RequestedOutputs) -> Calla
     common = [each for each in given if each != "--all-nodes"]
 
     def arguments(node: str) -> Sequence[str]:
-        return [*common, "--node", node, *_files(outputs, node)]
+        own_keys = [] if keys is None else ["--fleet-keys", str(keys / node)]
+        return [*common, "--node", node, *_files(outputs, node), *own_keys]
 
     return arguments
 

@@ -181,7 +181,7 @@ def command(
     options = replace(options, fast=clock == "fast", ros_clock=clock == "ros")
     if all_nodes:
         options.check()
-        return _run_nodes(project, outputs)
+        return _run_nodes(project, outputs, options.fleet_keys)
     console = StandardConsole(
         "warning" if quiet else "info", patience=FAST_PATIENCE if options.fast else PATIENCE
     )
@@ -195,11 +195,11 @@ def command(
         _close(console, code)
 
 
-def _run_nodes(project: Deployment, outputs: RequestedOutputs) -> int:
+def _run_nodes(project: Deployment, outputs: RequestedOutputs, keys: Path | None) -> int:
     from jacaros.runtime.cli.nodes import Nodes, arguments_of_nodes  # here: few runs start other processes
 
     names = [each.name for each in project.nodes]
-    return Nodes(names, arguments_of_nodes(given_arguments(), outputs)).run()
+    return Nodes(names, arguments_of_nodes(given_arguments(), outputs, keys)).run()
 
 
 def _parameters(

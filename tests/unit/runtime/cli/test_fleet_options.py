@@ -137,13 +137,14 @@ def test_a_fleet_without_its_library_is_one_error(
     )
 
 
-def test_each_node_writes_files_of_its_own() -> None:
+def test_each_node_has_output_files_and_keys_of_its_own() -> None:
     outputs = RequestedOutputs(record=Path("runs/r.jsonl.gz"), replay=Path("r.html"))
     given = ["house.jcm", "--all-nodes", "--record", "runs/r.jsonl.gz", "--seed", "1"]
     common = ["house.jcm", "--record", "runs/r.jsonl.gz", "--seed", "1"]
-    assert arguments_of_nodes(given, outputs)("base") == [
+    assert arguments_of_nodes(given, outputs, Path("keys"))("base") == [
         *common,
         *("--node", "base"),
         *("--record", str(Path("runs/base.r.jsonl.gz"))),
         *("--replay", "base.r.html"),
+        *("--fleet-keys", str(Path("keys/base"))),
     ]
