@@ -129,6 +129,9 @@ def test_a_member_that_is_not_in_the_list_is_not_heard(lab: Lab) -> None:
     late.send("a", "hello")
     lab.runs_on()
     assert not late.heard()
+    assert [line for line in late.lines if line.startswith("came ")] == [
+        f"came jacaros/{lab.fleet}/member/late/1"
+    ]
 
 
 def attack(lab: Lab, mallory: Player) -> None:
