@@ -11,6 +11,7 @@ import asyncio
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Annotated
 
 import msgspec
 
@@ -46,6 +47,12 @@ _FEW = 3
 """Measurements from which one with a long delay counts: the network has no shorter one."""
 
 
+_Number = Annotated[int, msgspec.Meta(ge=0, le=1 << 62)]
+"""Of a payload. Far more than anything counts to, and far from what cannot be written any more."""
+_Seconds = Annotated[float, msgspec.Meta(ge=-1e12, le=1e12)]
+"""A time, neither infinite nor NaN: the clocks are computed from it."""
+
+
 class Malformed(Exception):
     """Bytes that are no packet, or of another version. The text says what they are."""
 
@@ -63,13 +70,13 @@ class Packet(msgspec.Struct, array_like=True, forbid_unknown_fields=True):
         held: seconds between the arrival of that packet and this one.
     """
 
-    base: int
-    first: int
-    ack: int
+    base: _Number
+    first: _Number
+    ack: _Number
     payloads: list[bytes]
-    sent: float
-    echo: float
-    held: float
+    sent: _Seconds
+    echo: _Seconds
+    held: _Seconds
 
 
 _read_packet = msgspec.msgpack.Decoder(Packet).decode

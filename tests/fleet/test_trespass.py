@@ -1,0 +1,86 @@
+"""What a member with valid keys cannot do to another one, whatever it says."""
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from math import inf, nan
+from typing import Any
+
+import msgspec
+import pytest
+from queues import SimulatedNetwork
+
+import jacaros
+from jacaros import Mas
+from jacaros.fleet import protocol
+from jacaros.fleet.channel import VERSION, Malformed, read_packet
+from jacaros.fleet.joining import joining
+from jacaros.fleet.member import Member
+from jacaros.fleet.peer import Peer
+from jacaros.runtime.clock import clock_of
+
+
+class Pair:
+    """Two members, of which one says what it likes.
+
+    Attributes:
+        lines: what the other one's agents have printed, and its log.
+    """
+
+    def __init__(self) -> None:
+        self.network = SimulatedNetwork(clock_of(asyncio.get_running_loop()))
+        self.lines: list[str] = []
+        self.members: dict[str, Member] = {}
+        self.good = self._member("good", lambda name, line: self.lines.append(line))
+        self.evil = self._member("evil", lambda name, line: None)
+
+    def _member(self, name: str, log: Callable[[str, str], None]) -> Mas:
+        def joined(member: Member) -> None:
+            self.members[name] = member
+
+        join = joining(self.network.carrier(), name, joined=joined)
+        return Mas(name=name, join=join, on_print=log, on_log=lambda line, level: log(name, line))
+
+    @property
+    def line(self) -> Peer:
+        """The way of the evil one to the good one."""
+        return self.members["evil"].peers["good"]
+
+    async def say(self, *said: protocol.Said) -> None:
+        """Let the evil one say something, and let it arrive."""
+        for each in said:
+            self.line.say(each)
+        await self.good.sleep(1)
+
+
+def trespass(scene: Callable[[Pair], Awaitable[None]]) -> Callable[[], None]:
+    """Make a test of a scene with two members."""
+
+    def test() -> None:
+        async def main() -> None:
+            pair = Pair()
+            async with pair.good as good, pair.evil as evil:
+                assert good.environment
+                assert evil.environment
+                await good.sleep(1)
+                await scene(pair)
+
+        jacaros.run(main(), clock="fast")
+
+    test.__name__, test.__doc__ = scene.__name__, scene.__doc__
+    return test
+
+
+def message(performative: str, content: Any, reply: str | None = None) -> protocol.Message:
+    """Return a message to ``ann``."""
+    return protocol.Message(performative, "eve", "ann", content, "m1", reply, None)
+
+
+@pytest.mark.parametrize(
+    "fields",
+    [(1 << 63, 1, 0, 0.0), (1, 1 << 63, 0, 0.0), (1, 1, -1, 0.0), (1, 1, 0, nan), (1, 1, 0, inf)],
+)
+def test_numbers_beyond_all_reason_are_refused(fields: tuple[Any, ...]) -> None:
+    base, first, ack, sent = fields
+    packet = msgspec.msgpack.encode([base, first, ack, [b"x", b"y"], sent, 0.0, 0.0])
+    with pytest.raises(Malformed):
+        read_packet(b"JF%c%b" % (VERSION, packet))
