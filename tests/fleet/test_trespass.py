@@ -84,3 +84,23 @@ def test_numbers_beyond_all_reason_are_refused(fields: tuple[Any, ...]) -> None:
     packet = msgspec.msgpack.encode([base, first, ack, [b"x", b"y"], sent, 0.0, 0.0])
     with pytest.raises(Malformed):
         read_packet(b"JF%c%b" % (VERSION, packet))
+
+
+@trespass
+async def test_no_agent_takes_the_name_of_one_of_another_member(pair: Pair) -> None:
+    pair.good.add_agent("ann", "+done[source(S)] <- .print(S).")
+    await pair.say(
+        protocol.AgentNews("bob@lab", True),
+        protocol.ServiceNews("bob@lab", "cleaning", True),
+        protocol.Message("tell", "bob@lab", "ann", [0, "done"], "m1", None, None),
+    )
+    assert pair.lines[-1] == "bob@lab@evil"
+    assert pair.good.system.directory.names() == ("ann", "df")
+    assert list(pair.good.system.services.providers("cleaning")) == ["bob@lab@evil"]
+
+
+@trespass
+async def test_no_workspace_takes_the_path_of_one_of_another_member(pair: Pair) -> None:
+    await pair.say(protocol.WorkspaceNews("/main@lab", True))
+    paths = [each.path for each in pair.good.environment.workspaces()]
+    assert paths == ["/main", "/main@evil", "/main@lab@evil"]

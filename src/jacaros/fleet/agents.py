@@ -105,7 +105,9 @@ class FleetAgents:
             self.know(name, member, False)
 
     def know(self, name: str, member: str, present: bool) -> None:
-        """Hear that a member has an agent, or no longer."""
+        """Hear that a member has an agent, or no longer. A name with ``@`` would be that of an agent of another member."""
+        if "@" in name:
+            return
         if not present:
             members = self._holders.get(name, {})
             members.pop(member, None)

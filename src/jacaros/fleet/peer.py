@@ -313,9 +313,10 @@ class Peer:
     def _mount(self, path: str) -> None:
         environment = self._environment()
         seen_as = path
-        if any(each.path == path for each in environment.workspaces()):
+        is_taken = any(each.path == path for each in environment.workspaces())
+        if is_taken or "@" in path:  # it may be that of another member, which is not there yet
             seen_as = f"{path}@{self.name}"
-            if path != "/main":
+            if is_taken and path != "/main":
                 self.report(f"its workspace {path} is {seen_as} here, where {path} exists already")
         remote = RemoteWorkspace(seen_as, path, self.name, self._remote)
         # Before it is mounted, so that its artifacts get its path.
