@@ -69,11 +69,12 @@ class SimulatedNetwork:
 
     def joined(self, me: MemberId, listener: Listener) -> None:
         """Let a member in."""
-        for it, others in self._open.items():
+        known = dict(self._open)
+        self._open[me] = listener
+        for it, others in known.items():
             if not self._is_cut(me, it):
                 others.present(me, True)
                 listener.present(it, True)
-        self._open[me] = listener
 
     def _is_cut(self, one: MemberId, other: MemberId) -> bool:
         return frozenset({one.name, other.name}) in self._cut
