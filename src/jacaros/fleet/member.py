@@ -8,6 +8,8 @@ from functools import partial
 from secrets import token_hex
 
 from jacaros.artifacts.env.environment import Environment
+from jacaros.artifacts.env.errors import OperationFailed
+from jacaros.artifacts.env.values import Structure
 from jacaros.fleet import fleet_artifact, protocol
 from jacaros.fleet.agents import FleetAgents
 from jacaros.fleet.announced import Announced
@@ -19,6 +21,7 @@ from jacaros.fleet.peer import Peer
 from jacaros.fleet.rights import Rights
 from jacaros.look.records.records import MemberRecord
 from jacaros.runtime.errors import UsageError
+from jacaros.runtime.files.texts import aside
 from jacaros.runtime.mas.directory import NAME as DIRECTORY_NAME
 from jacaros.runtime.mas.system import System
 from jacaros.runtime.timers import Timer
@@ -104,7 +107,7 @@ class Member:
         self._ends.append(directory.join(self._agents, elsewhere=True))
         self._ends.append(directory.watch(self._agent_news))
         self._ends.append(self._announced.end)
-        self._ends.append(self._system.when_situated(self._show))
+        self._ends.append(self._system.when_situated(self._situated))
         await self._carrier.open(self.me, self)
         self._pulse_at = self._system.clock.elapsed
         if not await self._is_alone():
@@ -159,13 +162,25 @@ class Member:
         self.watchers.append(changed)
         return lambda: self.watchers.remove(changed)
 
-    def _show(self, environment: Environment) -> None:
-        """Show the members in the environment of this one, and in no other."""
+    def _situated(self, environment: Environment) -> None:
+        """Show the members in the environment of this one, and in no other; let agents create workspaces at them."""
+        environment.create_elsewhere = partial(self._create_workspace, environment)
         main, name = environment.workspace("/main"), fleet_artifact.NAME
         if any(each.name == name for each in main.artifacts()):
             self._warn(f"agents do not perceive the members: the project has an artifact `{name}`")
         else:
             main.offer(name, fleet_artifact.Fleet, (self.me.name, self.states, self.watch), personal=True)
+
+    async def _create_workspace(self, environment: Environment, path: str, member: str) -> None:
+        if member == self.me.name:
+            environment.create_workspace(path)
+            return
+        peer = self.peers.get(member)
+        if peer is None or not peer.is_there:
+            known = [self.me.name, *(each.name for each in self.peers.values() if each.is_there)]
+            message = f"unknown member `{member}`{aside(member, known)}"
+            raise OperationFailed(message, Structure("unknown_member", (member,)))
+        await peer.create_workspace(path)
 
     # ---- news for the others
 

@@ -1,5 +1,6 @@
 """Another member, as this one knows it: what it has, and what is under way between both."""
 
+import asyncio
 from collections.abc import Callable, Collection
 from functools import partial
 from typing import Any
@@ -326,6 +327,23 @@ class Peer:
         except OperationFailed:
             del self._workspaces[path]
             raise
+
+    async def create_workspace(self, path: str) -> None:
+        """Create a workspace there.
+
+        Raises:
+            OperationFailed: that is impossible.
+        """
+        ended: asyncio.Future[protocol.Ended] = asyncio.get_running_loop().create_future()
+
+        def done(said: protocol.Ended) -> None:
+            if not ended.done():
+                ended.set_result(said)
+
+        self._calls.ask(lambda call: protocol.CreateWorkspace(call, path), done)
+        outcome = self._remote.outcome(await ended)
+        if not outcome.ok:
+            raise outcome.failure
 
     def _on_artifact(self, said: protocol.ArtifactNews) -> None:
         if said.workspace in self._workspaces:

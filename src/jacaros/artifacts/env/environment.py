@@ -137,18 +137,24 @@ class WorkspaceArtifact(Artifact):
         self._tree.link_workspace(resolve_path(above, local_name), resolve_path(here, target))
 
     @operation(name="createWorkspace")
-    def create_elsewhere(self, path: str, address: str) -> None:
-        """Create a workspace on another computer. Not supported."""
-        self.use_remote_workspace()
+    async def create_elsewhere(self, path: str, member: str) -> None:
+        """Create a workspace at a member of the fleet. It is visible here when this has ended."""
+        if self._tree.create_elsewhere is None:
+            refuse(self, "this system is in no fleet: run it with --fleet NAME, or use createWorkspace(Path)")
+        await self.step(self._tree.create_elsewhere(resolve_path(self._here.path, path), member))
 
     @operation(name="createWorkspaceWithTopology")
+    def create_with_topology(self, path: str, topology: str) -> None:
+        """Create a workspace with a topology. Not supported."""
+        refuse(self, "workspaces have no topology; use createWorkspace and linkWorkspace")
+
     @operation(name="linkRemoteWorkspace")
     @operation(name="mountWorkspace")
     def use_remote_workspace(self, *arguments: object) -> None:
-        """Use a workspace of another system, or one with a topology. Not supported."""
+        """Make a workspace of another system visible here. Not supported."""
         refuse(
             self,
-            "all workspaces are of this process, without topology; use createWorkspace and linkWorkspace",
+            "workspaces of a fleet are visible under their own paths; use joinWorkspace, and linkWorkspace for a name",
         )
 
 

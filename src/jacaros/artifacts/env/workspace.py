@@ -1,6 +1,6 @@
 """Workspaces: create, find, focus, link, use and dispose artifacts."""
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Awaitable, Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from types import MappingProxyType
@@ -312,10 +312,14 @@ class WorkspaceTree:
 
     Args:
         make: creates the workspace with this full path in a parent workspace (None for the root).
+
+    Attributes:
+        create_elsewhere: creates the workspace with this full path at a member of the fleet. None: there is no fleet.
     """
 
     def __init__(self, make: Callable[[str, ports.Workspace | None], ports.Workspace]) -> None:
         self._make = make
+        self.create_elsewhere: Callable[[str, str], Awaitable[None]] | None = None
         self._workspaces: dict[str, ports.Workspace] = {}
         self._links: dict[str, str] = {}
         self._watchers: dict[str, list[Callable[[], None]]] = {}

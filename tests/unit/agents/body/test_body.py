@@ -399,7 +399,9 @@ async def test_what_needs_other_processes_says_so(one, two, clock):
         ("crash",),
         ("shutdownNode",),
     ):
-        failure = one.do(name, *arguments)
+        act = one.begin(action(name, *arguments))
+        await clock.sleep(0.1)
+        failure = one.completions[act]
         assert reason_of(failure) == f'not_supported("{name}/{len(arguments)}")'
         assert len(message_of(failure)) > 20
 
