@@ -24,6 +24,9 @@ class Listener(Protocol):
     def received(self, sender: MemberId, datagram: bytes) -> None:
         """Receive a datagram of another member."""
 
+    def all_received(self) -> None:
+        """Hear that nothing else has arrived for now, after one or more datagrams."""
+
     def present(self, member: MemberId, is_present: bool) -> None:
         """Hear that another member is there (True) or no longer answers (False), killed, frozen or cut off."""
 

@@ -21,12 +21,15 @@ from jacaros.runtime.timers import Timer
 VERSION = 1
 """Version of everything on the wire."""
 _MAGIC = b"JF"
+_HEADER = _MAGIC + bytes([VERSION])
 _WINDOW = 512 << 10
 """Bytes that are on their way at most; a larger payload travels alone."""
 _DATAGRAM = 64 << 10
 """Bytes of payloads in one packet, except for a larger payload."""
 _AHEAD = 4096
 """Payloads that are kept while an earlier one is missing."""
+_PAUSE = 1e-4
+"""Seconds after a packet until which payloads go together at the end of the turn of the loop; later, at once."""
 _ACK_DELAY = 0.01
 """Seconds for which an acknowledgement waits for a packet to travel with."""
 _ACK_EVERY = 32
@@ -201,6 +204,7 @@ class Channel:
         self._ahead: dict[int, bytes] = {}
         self._unacknowledged = 0
         self._flushing = False
+        self._flushed_at = -_PAUSE
         self._tries = 0
         self._sent_at = 0.0  # when something was last sent, or acknowledged
         self._owed_at = 0.0
@@ -220,16 +224,20 @@ class Channel:
 
     def send(self, payload: bytes, on_lost: Callable[[], None] | None = None) -> None:
         """Send a payload. See `_Kept` for *on_lost*."""
-        self._kept.append(_Kept(payload, self._clock.elapsed, on_lost))
+        now = self._clock.elapsed
+        self._kept.append(_Kept(payload, now, on_lost))
         self.backlog += len(payload)
         if self._open and not self._flushing:
-            # The first one goes at once; those that follow in this turn of the loop go together.
-            self._flushing = True
-            asyncio.get_running_loop().call_soon(self._flush_rest)
-            self._flush()
+            if now - self._flushed_at >= _PAUSE:
+                self._flushed_at = now
+                self._flush()
+            else:
+                self._flushing = True
+                asyncio.get_running_loop().call_soon(self._flush_rest)
 
     def _flush_rest(self) -> None:
         self._flushing = False
+        self._flushed_at = self._clock.elapsed
         self._flush()
 
     def _flush(self) -> None:
@@ -286,7 +294,7 @@ class Channel:
         self._unacknowledged = 0
         now = self._clock.now()
         packet = Packet(self._base, first, self._expected - 1, payloads, now, *self.clocks.echo(now))
-        self._transmit(b"%b%c%b" % (_MAGIC, VERSION, _write_packet(packet)))
+        self._transmit(_HEADER + _write_packet(packet))
 
     def ping(self) -> None:
         """Send a packet without payloads, which also acknowledges, even to a member that is lost."""
@@ -302,10 +310,13 @@ class Channel:
         self._acknowledged(packet.ack)
         self._skip_to(packet.base)
         before = self._expected
-        for number, payload in enumerate(packet.payloads, packet.first):
-            if self._expected <= number < self._expected + _AHEAD:
-                self._ahead[number] = payload
-        self._deliver()
+        if packet.first == before and not self._ahead:  # as nearly always
+            self._deliver_all(packet.payloads)
+        else:
+            for number, payload in enumerate(packet.payloads, packet.first):
+                if self._expected <= number < self._expected + _AHEAD:
+                    self._ahead[number] = payload
+            self._deliver()
         if packet.payloads:
             self._owe(self._expected - before)
 
@@ -315,6 +326,12 @@ class Channel:
             self._expected = base
             self._ahead = {number: payload for number, payload in self._ahead.items() if number >= base}
             self._deliver()
+
+    def _deliver_all(self, payloads: list[bytes]) -> None:
+        for payload in payloads:
+            self._expected += 1
+            if payload:
+                self._receive(payload)
 
     def _deliver(self) -> None:
         while (payload := self._ahead.pop(self._expected, None)) is not None:

@@ -244,6 +244,10 @@ class Member:
             peer.find()
             peer.heard(packet)
 
+    def all_received(self) -> None:
+        """Give agents that got something their turns now: each pass of the loop between would delay the answer."""
+        self._system.scheduler.hurry()
+
     def refused(self, sender: str, why: str) -> None:
         """Report something that is no datagram of a member, once for each sender."""
         self._warn(f"ignored from {sender}: {why}", sender)

@@ -10,6 +10,7 @@ import threading
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
+from functools import lru_cache
 from itertools import count
 from typing import Any
 
@@ -22,12 +23,22 @@ from jacaros.runtime.errors import JacarosError
 _ROOT = "jacaros"
 _MOST = 100_000
 """Arrivals that wait for the event loop at most; more are dropped, as by a network, and sent again."""
+_MEMBERS = 1000
+"""Keys whose member is remembered."""
+_TOKEN, _DATAGRAM = 5, 8
+"""Parts of the keys of liveliness tokens and of datagrams."""
 _CLOSING = 1.0
 """Seconds that a thread of Zenoh has to end."""
 _TRY = 1.0
 """Seconds between attempts to reach a router."""
 _REMIND = 5
 """Attempts between lines about them."""
+
+
+def _named(key: str) -> MemberId | None:
+    """Return the member whose token or datagram has this key."""
+    parts = key.split("/")
+    return MemberId(parts[-2], parts[-1]) if len(parts) in (_TOKEN, _DATAGRAM) else None
 
 
 class ZenohCarrier:
@@ -52,6 +63,7 @@ class ZenohCarrier:
         self._listener: Listener | None = None
         self._me = MemberId("", "")
         self._declared: list[Any] = []
+        self._named = lru_cache(_MEMBERS)(_named)
         self._threads = 0
         self._ended: queue.SimpleQueue[threading.Thread] = queue.SimpleQueue()
 
@@ -157,22 +169,23 @@ class ZenohCarrier:
         self._is_called = False  # first: what arrives from now on calls again
         for _ in range(len(self._arrived)):
             self._arrive(*self._arrived.popleft())
+        if self._listener is not None:
+            self._listener.all_received()
 
     def _arrive(self, kind: str, sample: Any) -> None:
         if self._session is None or self._listener is None:
             return
-        parts = str(sample.key_expr).split("/")
-        if kind == "token" and len(parts) == 5:
-            member = MemberId(parts[3], parts[4])
-            if member != self._me:
-                is_there = sample.kind == zenoh.SampleKind.PUT
-                if not is_there and (publisher := self._publishers.pop(member, None)) is not None:
-                    publisher.undeclare()
-                self._listener.present(member, is_there)
-        elif kind == "datagram" and len(parts) == 8:
-            self._listener.received(MemberId(parts[6], parts[7]), sample.payload.to_bytes())
+        key = str(sample.key_expr)
+        member = self._named(key)
+        if member is None:
+            self._listener.refused(key, "a key of no member")
         elif kind == "datagram":
-            self._listener.refused(str(sample.key_expr), "a key of no member")
+            self._listener.received(member, sample.payload.to_bytes())
+        elif member != self._me:
+            is_there = sample.kind == zenoh.SampleKind.PUT
+            if not is_there and (publisher := self._publishers.pop(member, None)) is not None:
+                publisher.undeclare()
+            self._listener.present(member, is_there)
 
     def send(self, to: MemberId, datagram: bytes) -> None:
         """Send a datagram. Zenoh drops it if the link is congested."""
