@@ -15,6 +15,7 @@ LATE = 5.0
 """Seconds within which an operation is cancelled whose caller has been told that it failed."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("part", range(PARTS))
 def test_random_schedules_keep_the_promises_of_a_fleet(part: int) -> None:
     for seed in range(part, SCHEDULES, PARTS):
