@@ -112,8 +112,11 @@ def test_an_artifact_of_the_project_has_precedence(tmp_path: Path) -> None:
 
 def test_a_lone_program_focuses_the_fleet_and_agents_of_projects_choose(tmp_path: Path) -> None:
     (tmp_path / "robot.asl").write_text("!start. +!start.")
-    (tmp_path / "lab.jcm").write_text("mas lab { agent robot }")
+    (tmp_path / "lab.jcm").write_text(
+        "mas lab { agent robot agent one: robot.asl { focus: fleet } agent two: robot.asl { focus: main.fleet } }"
+    )
     (lone,) = in_fleet(load_deployment(tmp_path / "robot.asl")).agents
     assert [(each.artifact, each.workspace) for each in lone.focus] == [("fleet", "main")]
-    (declared,) = in_fleet(load_deployment(tmp_path / "lab.jcm")).agents
-    assert declared.focus == ()
+    deployment = in_fleet(load_deployment(tmp_path / "lab.jcm"))
+    assert [each.focus for each in deployment.agents] == [(), lone.focus, lone.focus]
+    assert not deployment.ignored

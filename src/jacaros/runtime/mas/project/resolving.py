@@ -24,6 +24,8 @@ from jacaros.runtime.mas.project.nodes import Nodes
 
 _MAIN = "/main"
 _DEFAULT_NAMES = frozenset({"workspace", "blackboard", "console", "manrepo", "system"})
+_FLEET = "fleet"
+"""The artifact in ``/main`` of each member of a fleet, unless the project declares another one of this name."""
 """The standard artifacts of every workspace."""
 
 
@@ -227,7 +229,7 @@ class Resolver:
         path = self._named(wanted.workspace, wanted.span, wanted.node)
         if path is None:
             return None
-        known = self._declared(path) | _DEFAULT_NAMES
+        known = self._declared(path) | _DEFAULT_NAMES | ({_FLEET} if path == _MAIN else set())
         if path in self._paths and wanted.artifact not in known:
             self.warn(
                 f"artifact `{wanted.artifact}` is not declared in workspace `{wanted.workspace}`",
@@ -240,6 +242,8 @@ class Resolver:
         at = self.nodes.named(wanted.node)
         paths = [path for path in self._paths if at is None or self._is_at(path, at)]
         found = [path for path in paths if wanted.artifact in self._declared(path)]
+        if not found and wanted.artifact == _FLEET and at is None:
+            return FocusSpec(_FLEET, self._shortest(_MAIN), wanted.namespace)
         if not found:
             every = {name for path in paths for name in self._declared(path)}
             created = f"if an agent creates it, name its workspace, too: `workspace.{wanted.artifact}`"
