@@ -11,5 +11,7 @@ Every system is a *member* of its fleet. The modules, from the network to the sy
 `peer`, `member`        another member, and this one
 `agents`, `services`    agents of other members, and what they provide
 `served`, `remote`      workspaces of this member for others, and those of others
+`fleet_artifact`        the members as percepts of agents
+`visits`, `operator`    commands that look at members and stop them: how members serve them, and they
 ======================  ============================================================================
 """

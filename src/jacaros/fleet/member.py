@@ -19,6 +19,7 @@ from jacaros.fleet.causes import Causes
 from jacaros.fleet.channel import Malformed, read_packet
 from jacaros.fleet.peer import Peer
 from jacaros.fleet.rights import Rights
+from jacaros.fleet.visits import Visits, is_visitor
 from jacaros.look.records.records import MemberRecord
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.files.texts import aside
@@ -84,6 +85,8 @@ class Member:
         self._agents = FleetAgents(me.name, system.directory.find, self._warn, self._renamed)
         self._causes = Causes(system, me.name)
         self._announced = Announced(system, self._names, self._tell)
+        send, picture = carrier.send, partial(self._announced.picture, 1, 0)
+        self._visits = Visits(system.clock, send, picture, rights, self._stopped)
         self._ends: list[Callable[[], object]] = []
 
     def _warn(self, text: str, about: str = "") -> None:
@@ -136,14 +139,19 @@ class Member:
             peer.say(protocol.Bye())
         clock = self._system.clock
         patience = clock.elapsed + GOODBYE
-        while sum(each.backlog for each in there) and clock.elapsed < patience:
+        while sum(each.backlog for each in there) + self._visits.backlog and clock.elapsed < patience:
             await clock.sleep(0.01)
         for timer in (self._timer, *self._forgetting.values()):
             if timer is not None:
                 timer.cancel()
         for peer in list(self.peers.values()):
             peer.lose("left")
+        self._visits.end()
         await self._carrier.close()
+
+    def _stopped(self, visitor: str) -> None:
+        self._system.console.log(f"[fleet] stopped by {visitor}")
+        self._system.end(0)
 
     # ---- what agents perceive
 
@@ -239,6 +247,9 @@ class Member:
         except Malformed as error:
             self.refused(sender.name, str(error))
             return
+        if is_visitor(sender):
+            self._visits.received(sender, packet)
+            return
         peer = self._peer(sender)
         if peer is not None and not peer.is_absent:
             peer.find()
@@ -254,6 +265,9 @@ class Member:
 
     def present(self, member: MemberId, is_present: bool) -> None:
         """Hear that another member is there, or is not."""
+        if is_visitor(member):
+            self._visits.present(member, is_present)
+            return
         if not is_present:
             if self._rival == member:
                 self._rival = None

@@ -204,17 +204,17 @@ class Observed(_Said):
 
 
 class Ask(_Said):
-    """A question or order of `jacaros fleet`: ``status``, ``stop``."""
+    """A request of a visitor: ``ping`` or ``stop``. See `jacaros.fleet.visits`."""
 
     call: int
     what: str
 
 
 class Answer(_Said):
-    """The answer to it."""
+    """The answer to it. ``refused`` says why it was refused, or is empty."""
 
     call: int
-    data: Any
+    refused: str
 
 
 Said = (

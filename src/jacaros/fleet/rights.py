@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
+from jacaros.fleet.names import OPERATOR
 from jacaros.runtime.errors import UsageError
 
 SEND, SEE, OPERATE, TELL_HOW, STOP = "send", "see", "operate", "tell_how", "stop"
@@ -17,7 +18,7 @@ class Rights:
     """The rights of the other members.
 
     Args:
-        of: rights by name of the member; ``*`` for all others. Default: `USUAL`.
+        of: rights by name of the member; ``*`` for all others. Default: `USUAL`; the operator may also stop this member.
     """
 
     def __init__(self, of: Mapping[str, frozenset[str]] = MappingProxyType({})) -> None:
@@ -25,7 +26,8 @@ class Rights:
 
     def of(self, member: str) -> frozenset[str]:
         """Return what a member may do."""
-        return self._of.get(member, self._of.get(ALL, USUAL))
+        usual = self._of.get(ALL, USUAL)
+        return self._of.get(member, usual | {STOP} if member == OPERATOR else usual)
 
 
 def read_rights(written: Sequence[str]) -> Rights:

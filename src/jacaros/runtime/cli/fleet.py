@@ -3,13 +3,14 @@
 import click
 
 from jacaros.runtime.cli.fleet_keys import keys_command
+from jacaros.runtime.cli.fleet_list import list_command, ping_command, stop_command
 from jacaros.runtime.cli.fleet_router import router_command
 
 
-@click.group("fleet", short_help="Set up a fleet: keys and routers.")
+@click.group("fleet", short_help="Look at a fleet, and set up its keys and routers.")
 def command() -> None:
-    """Connect systems on several computers as a fleet."""
+    """Connect systems on several computers as a fleet, look at its members, and stop them."""
 
 
-command.add_command(keys_command)
-command.add_command(router_command)
+for each in (list_command, ping_command, stop_command, keys_command, router_command):
+    command.add_command(each)
