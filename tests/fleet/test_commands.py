@@ -14,9 +14,11 @@ from queues import SimulatedNetwork
 import jacaros
 from jacaros import Mas
 from jacaros.fleet.carrier import MemberId
+from jacaros.fleet.channel import Packet
 from jacaros.fleet.joining import joining
 from jacaros.fleet.member import Member
 from jacaros.fleet.operator import Operator
+from jacaros.fleet.protocol import Ask, write
 from jacaros.fleet.rights import read_rights
 from jacaros.runtime.cli.main import call
 from jacaros.runtime.clock import Clock, clock_of
@@ -141,6 +143,20 @@ def test_a_member_serves_a_limited_number_of_visitors() -> None:
             for number in range(100):
                 visits.present(MemberId("operator", f"visit{number:03}"), False)
             assert visits.backlog == 0
+
+    run(test)
+
+
+def test_answers_to_a_visitor_that_acknowledges_none_are_limited() -> None:
+    async def test(fleet: Fleet) -> None:
+        async with fleet.member("robot") as robot:
+            visits, visitor = fleet.members["robot"]._visits, MemberId("operator", "visit1")
+            visits.present(visitor, True)
+            ask = write(Ask(1, "ping" * 10_000))
+            for number in range(1, 100_000):
+                visits.received(visitor, Packet(number, number, 0, [ask], 1.0, 0.0, 0.0))
+            assert 1 << 20 <= visits.backlog < 2 << 20
+            await robot.sleep(1)
 
     run(test)
 

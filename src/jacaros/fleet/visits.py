@@ -21,6 +21,8 @@ from jacaros.runtime.clock import Clock
 _MARK = "visit"
 _MOST = 16
 """Visitors at a time. Another one displaces the oldest."""
+_FULL = 1 << 20
+"""Bytes under way to a visitor beyond which it gets no answers."""
 
 
 def visitor_id(name: str) -> MemberId:
@@ -84,7 +86,7 @@ class Visits:
             said = protocol.read(payload)
         except msgspec.MsgspecError:
             return
-        if isinstance(said, protocol.Ask):
+        if isinstance(said, protocol.Ask) and self._channels[visitor].backlog <= _FULL:
             self._answer(visitor, said)
 
     def _answer(self, visitor: MemberId, asked: protocol.Ask) -> None:
