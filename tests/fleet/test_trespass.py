@@ -104,3 +104,59 @@ async def test_no_workspace_takes_the_path_of_one_of_another_member(pair: Pair) 
     await pair.say(protocol.WorkspaceNews("/main@lab", True))
     paths = [each.path for each in pair.good.environment.workspaces()]
     assert paths == ["/main", "/main@evil", "/main@lab@evil"]
+
+
+async def asked(pair: Pair, goal: str) -> str:
+    """Let ann ask eve, who does not answer. Return the id of the question."""
+    ann = pair.good.add_agent("ann", f"+!ask <- {goal}. +!go <- .print(gone).")
+    pair.evil.add_agent(
+        "eve", "+?secret(X) <- .wait(100000). +!kqml_received(_, askHow, _, _) <- .wait(100000)."
+    )
+    await pair.good.sleep(1)
+    ann.achieve("ask")
+    await pair.good.sleep(1)
+    return next(iter(pair.members["good"].peers["evil"]._asked))
+
+
+_PLAN = "+!lesson <- .print(taught)."
+
+
+@trespass
+async def test_a_question_does_not_permit_plans(pair: Pair) -> None:
+    question = await asked(pair, ".send(eve, askOne, secret(_))")
+    await pair.say(message("tellHow", _PLAN, question), message("achieve", [0, "lesson"]))
+    assert (
+        pair.lines[-2] == "[fleet] evil: refused a message: it has not the right `tell_how` (--fleet-allow)"
+    )
+    assert "taught" not in pair.lines
+
+
+@trespass
+async def test_the_plans_that_an_agent_asked_for_arrive(pair: Pair) -> None:
+    question = await asked(pair, ".send(eve, askHow, {+!lesson})")
+    await pair.say(message("untellHow", [0, "p__1"], question), message("tellHow", _PLAN, question))
+    await pair.say(message("achieve", [0, "lesson"]))
+    assert pair.lines[-1] == "taught"
+    assert sum("tell_how" in line for line in pair.lines) == 1
+
+
+@trespass
+async def test_a_performative_cannot_write_into_the_terminal(pair: Pair) -> None:
+    pair.good.add_agent("ann", "")
+    await pair.say(message("tell\x1b[2J", [0, "done"]), message("tell", [99]))
+    assert not any("\x1b" in line for line in pair.lines)
+
+
+@trespass
+async def test_an_answer_after_a_loss_is_not_news(pair: Pair) -> None:
+    ann = pair.good.add_agent("ann", "+!ask <- .send(eve, askOne, p(_), A). -!ask[error(E)] <- .print(E).")
+    pair.evil.add_agent("eve", "p(1).")
+    await pair.good.sleep(1)
+    ann.achieve("ask")
+    await pair.good.sleep(0.0015)  # the question has arrived, its answer has not
+    pair.network.cut("good", "evil")
+    await pair.good.sleep(1)
+    pair.network.heal("good", "evil")
+    await pair.good.sleep(1)
+    assert "member_lost" in pair.lines
+    assert not ann.believes("p(_)")

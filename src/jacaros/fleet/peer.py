@@ -30,11 +30,12 @@ FULL = 8 << 20
 _REPORTS = 100
 """Different warnings about a member that are written at most."""
 _QUESTIONS = 10_000
-"""Questions to a member whose answers are awaited; older ones get no report of its loss."""
+"""Questions to a member whose answers are awaited, or must be ignored; older ones get no report of its loss."""
 _ERROR, _ERROR_MSG = functor("error", 1), functor("error_msg", 1)
 _HOW = frozenset({"tellHow", "tell-how", "untellHow", "untell-how"})
 """Performatives that change the program of their receiver."""
-_ASKING = ("ask",)
+_ASKING = "ask"
+_ASKING_HOW = ("askHow", "ask-how")
 
 
 class Peer:
@@ -84,6 +85,7 @@ class Peer:
         self._is_known = False
         self._reported: set[str] = set()
         self._asked: dict[str, SpeechAct] = {}
+        self._failed: dict[str, bool] = {}
         self._services: dict[tuple[str, str], str] = {}
         wire = self._wire = Wire(names.name, names.find)
         self._calls = Calls(self, self.name)
@@ -208,6 +210,7 @@ class Peer:
         for agent, service in list(self._services):
             self._on_service(protocol.ServiceNews(agent, service, False))
         asked, self._asked = self._asked, {}
+        self._failed = dict.fromkeys([*self._failed, *asked][-_QUESTIONS:], True)
         for message in asked.values():
             self._system.mailboxes.returned(message, "member_lost")
 
@@ -217,6 +220,7 @@ class Peer:
         for path in list(self._workspaces):
             self._on_workspace(protocol.WorkspaceNews(path, False))
         self._names.forget_run(self.id.incarnation)
+        self._failed.clear()
         self._causes.want(self.name, False)
 
     def record(self) -> MemberRecord:
@@ -385,23 +389,29 @@ class Peer:
             del self._asked[next(iter(self._asked))]
 
     def _on_message(self, said: protocol.Message) -> None:
-        reason = self._deliver(said)
-        if reason:
-            returned = protocol.Returned(
-                said.id, said.sender, said.receiver, said.performative, said.content, reason
-            )
-            # Kept if it is lost now: nothing else tells the sender.
-            self.channel.send(protocol.write(returned), lambda: None)
+        reason = "malformed"
+        try:
+            reason = self._deliver(said)
+        finally:
+            if reason:
+                returned = protocol.Returned(
+                    said.id, said.sender, said.receiver, said.performative, said.content, reason
+                )
+                # Kept if it is lost now: nothing else tells the sender.
+                self.channel.send(protocol.write(returned), lambda: None)
 
     def _deliver(self, said: protocol.Message) -> str:
         """Put a message into the mailbox of its receiver. Return why that is impossible, or an empty text."""
-        changes = said.performative in _HOW and said.in_reply_to not in self._asked
-        right = TELL_HOW if changes else SEND
+        right = TELL_HOW if said.performative in _HOW and not self._is_answer_to_how(said) else SEND
         if right not in self._rights:
             self.report(f"refused a message: it has not the right `{right}` (--fleet-allow)")
             return "not_permitted"
+        if not (said.performative + said.sender).isprintable():
+            return "malformed"  # they get into logs
         if said.in_reply_to is not None:
             self._asked.pop(said.in_reply_to, None)
+            if self._failed.pop(said.in_reply_to, False):
+                return ""  # its asker has been told that the member was lost, and would take it for news
         sender, content = self._agents.called(said.sender, self.name), self._wire.to_term(said.content)
         message = SpeechAct(said.performative, sender, said.receiver, content, said.id, said.in_reply_to)
         if self._system.directory.find_here(said.receiver) is None:
@@ -414,6 +424,13 @@ class Peer:
             )
         except Failure:
             return "mailbox_full"
+
+    def _is_answer_to_how(self, said: protocol.Message) -> bool:
+        """Return whether it brings the plans that its receiver has asked for."""
+        asked = self._asked.get(said.in_reply_to or "")
+        return (
+            asked is not None and asked.performative in _ASKING_HOW and asked.sender == said.receiver
+        ) and not said.performative.startswith("un")
 
     def _on_returned(self, said: protocol.Returned) -> None:
         if self._asked.pop(said.id, None) is None and said.performative.startswith(_ASKING):

@@ -193,8 +193,8 @@ class Mailboxes:
 
         Args:
             message: the message.
-            reason: why: ``receiver_not_found``, ``mailbox_full``, ``not_permitted``, ``member_lost``, or ``unconfirmed`` if
-                it may have arrived.
+            reason: why: ``receiver_not_found``, ``mailbox_full``, ``not_permitted``, ``member_lost``, ``malformed``, or
+                ``unconfirmed`` if it may have arrived.
         """
         sender = self._find(message.sender)
         if sender is not None:
