@@ -24,12 +24,14 @@ class Pair:
 
     Attributes:
         lines: what the other one's agents have printed, and its log.
+        ended: its answers to `request`.
     """
 
     def __init__(self) -> None:
         self.network = SimulatedNetwork(clock_of(asyncio.get_running_loop()))
         self.lines: list[str] = []
         self.members: dict[str, Member] = {}
+        self.ended: list[protocol.Ended] = []
         self.good = self._member("good", lambda name, line: self.lines.append(line))
         self.evil = self._member("evil", lambda name, line: None)
 
@@ -50,6 +52,23 @@ class Pair:
         for each in said:
             self.line.say(each)
         await self.good.sleep(1)
+
+    async def request(self, said: Callable[[int], protocol.Said]) -> protocol.Ended:
+        """Let the evil one ask for something. Return the answer."""
+        self.ended.clear()
+        self.line._calls.ask(said, self.ended.append)
+        await self.good.sleep(1)
+        return self.ended[0]
+
+    async def execute(self, artifact: str, operation: str, arguments: object) -> protocol.Ended:
+        """Let the evil one run an operation of an artifact in `/main` of the other one."""
+        remote = self.evil.environment.workspace("/main@good").lookup(artifact)
+        number = self.members["evil"]._names.number(remote)
+        return await self.request(
+            lambda call: protocol.Execute(
+                call, number, operation, arguments, "eve", None, 0, "wait", True, None
+            )
+        )
 
 
 def trespass(scene: Callable[[Pair], Awaitable[None]]) -> Callable[[], None]:
@@ -160,3 +179,26 @@ async def test_an_answer_after_a_loss_is_not_news(pair: Pair) -> None:
     await pair.good.sleep(1)
     assert "member_lost" in pair.lines
     assert not ann.believes("p(_)")
+
+
+@trespass
+async def test_ending_the_run_is_a_right_of_its_own(pair: Pair) -> None:
+    assert (await pair.execute("blackboard", "out", [2, "hello"])).ok
+    ended = await pair.execute("system", "shutdownNode", [2])
+    assert (ended.ok, ended.reason) == (False, [1, "not_permitted", [0, "stop"]])
+
+
+@trespass
+async def test_a_malformed_request_fails(pair: Pair) -> None:
+    ended = await pair.execute("blackboard", "out", [2, [99]])
+    assert (ended.ok, ended.message) == (False, "malformed request: no value: kind 99")
+
+
+@trespass
+async def test_nobody_uses_the_rights_of_another_member(pair: Pair) -> None:
+    def create(workspace: str, call: int) -> protocol.Create:
+        return protocol.Create(call, workspace, "mine", "Blackboard", [2], "eve")
+
+    assert (await pair.request(lambda call: create("/main", call))).ok
+    ended = await pair.request(lambda call: create("/main@evil", call))
+    assert (ended.ok, ended.message) == (False, "workspace `/main@evil` is not of this system")

@@ -10,6 +10,7 @@ from jacaros.agents.mind.state.plan import Failure
 from jacaros.agents.terms.values import String, atom, functor
 from jacaros.artifacts.env.environment import Environment
 from jacaros.artifacts.env.errors import OperationFailed
+from jacaros.artifacts.env.operation import OperationOutcome
 from jacaros.fleet import protocol
 from jacaros.fleet.agents import FleetAgents
 from jacaros.fleet.announced import Announced
@@ -18,7 +19,7 @@ from jacaros.fleet.carrier import MemberId
 from jacaros.fleet.causes import Causes
 from jacaros.fleet.channel import Channel, Packet
 from jacaros.fleet.remote import Calls, RemoteWorkspace, RemoteWorkspaces
-from jacaros.fleet.rights import OPERATE, SEE, SEND, TELL_HOW
+from jacaros.fleet.rights import OPERATE, SEE, SEND, STOP, TELL_HOW
 from jacaros.fleet.served import Served
 from jacaros.fleet.wire import NotSendable, Wire
 from jacaros.look.records.records import MemberRecord
@@ -34,6 +35,8 @@ _QUESTIONS = 10_000
 _ERROR, _ERROR_MSG = functor("error", 1), functor("error_msg", 1)
 _HOW = frozenset({"tellHow", "tell-how", "untellHow", "untell-how"})
 """Performatives that change the program of their receiver."""
+_SHUTDOWN = "shutdownNode"
+"""The operation of CArtAgO that ends the run."""
 _ASKING = "ask"
 _ASKING_HOW = ("askHow", "ask-how")
 
@@ -105,7 +108,7 @@ class Peer:
             protocol.Returned: self._on_returned,
             protocol.WorkspaceNews: self._if_known(self._on_workspace),
             protocol.ArtifactNews: self._if_known(self._on_artifact),
-            protocol.Execute: partial(self._allowed, OPERATE, self._served.on_execute),
+            protocol.Execute: self._on_execute,
             protocol.Create: partial(self._allowed, OPERATE, self._served.on_create),
             protocol.CreateWorkspace: partial(self._allowed, OPERATE, self._served.on_create_workspace),
             protocol.Dispose: partial(self._allowed, OPERATE, self._served.on_dispose),
@@ -163,13 +166,23 @@ class Peer:
             self.report(f"dropped something that is no valid message: {kind}: {error}", "invalid")
 
     def _allowed(self, right: str, handler: Callable[[Any], None], asked: Any) -> None:
-        """Do what it asks for if it may."""
+        """Do what it asks for if it may. It gets an outcome in any case."""
         if right in self._rights:
-            handler(asked)
+            try:
+                handler(asked)
+            except OperationFailed as failure:
+                self._served.fail(asked.call, OperationOutcome.of(failure))
+            except Exception as error:
+                self._served.fail(asked.call, OperationOutcome(False, f"malformed request: {error}"))
+                raise
             return
         self.report(f"refused a request: it has not the right `{right}` (--fleet-allow)")
         text = f"{self._system.deployment.name} gives this system not the right `{right}`"
         self.say(protocol.Ended(asked.call, False, text, [1, "not_permitted", [0, right]], [], None))
+
+    def _on_execute(self, asked: protocol.Execute) -> None:
+        """Run an operation. One that ends the run has a right of its own."""
+        self._allowed(STOP if asked.operation == _SHUTDOWN else OPERATE, self._served.on_execute, asked)
 
     # ---- its life
 

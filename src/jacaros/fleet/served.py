@@ -5,7 +5,7 @@ from functools import partial
 from typing import Protocol
 
 from jacaros.artifacts.env.environment import Environment
-from jacaros.artifacts.env.errors import ArtifactId, OperationFailed
+from jacaros.artifacts.env.errors import ArtifactId, UnknownWorkspace
 from jacaros.artifacts.env.operation import SUCCEEDED, OperationOutcome, OperationRequest
 from jacaros.artifacts.env.ports import OnOutcome, UnderWay, Workspace
 from jacaros.artifacts.env.property import ObservableProperty, Observation
@@ -156,7 +156,7 @@ class Served:
         """Run an operation."""
         artifact = self.names.own(asked.artifact)
         if artifact is None:
-            self._fail(asked.call, _gone(asked.artifact))
+            self.fail(asked.call, _gone(asked.artifact))
             return
         outs: list[Out] = []
         arguments = tuple(self._wire.to_value(asked.arguments, outs))
@@ -199,18 +199,16 @@ class Served:
         def made(artifact: ArtifactId | None, outcome: OperationOutcome) -> None:
             self._end(asked.call, outcome, made=None if artifact is None else self.names.number(artifact))
 
-        def begin() -> UnderWay:
-            workspace = self._environment().workspace(asked.workspace)
-            arguments = self._wire.to_value(asked.arguments)
-            return workspace.create(asked.name, asked.type_name, arguments, self._caller(asked.creator), made)
-
+        environment = self._environment()
+        workspace = environment.workspace(asked.workspace)
+        if workspace not in environment.own():
+            raise _not_own(asked.workspace)  # nobody uses the rights that this member has at others
+        arguments, creator = self._wire.to_value(asked.arguments), self._caller(asked.creator)
         self._begun.add(asked.call)
-        try:
-            self._keep(asked.call, begin())
-        except OperationFailed as failure:
-            self._end(asked.call, OperationOutcome.of(failure))
+        self._keep(asked.call, workspace.create(asked.name, asked.type_name, arguments, creator, made))
 
-    def _fail(self, call: int, outcome: OperationOutcome) -> None:
+    def fail(self, call: int, outcome: OperationOutcome) -> None:
+        """Answer that a call has failed."""
         self._begun.add(call)
         self._end(call, outcome)
 
@@ -233,7 +231,7 @@ class Served:
         """Link two artifacts."""
         target = self.names.own(asked.to)
         if target is None:
-            self._fail(asked.call, _gone(asked.to))
+            self.fail(asked.call, _gone(asked.to))
             return
         self._on_artifact(
             asked.call,
@@ -266,16 +264,13 @@ class Served:
     ) -> None:
         artifact = self.names.own(number)
         if artifact is None:
-            self._fail(call, _gone(number))
+            self.fail(call, _gone(number))
             return
         self._request(call, lambda done: request(artifact, done))
 
     def _request(self, call: int, request: Callable[[OnOutcome], object]) -> None:
         self._begun.add(call)
-        try:
-            request(partial(self._end, call))
-        except OperationFailed as failure:
-            self._end(call, OperationOutcome.of(failure))
+        request(partial(self._end, call))
 
     def on_stop_focus(self, asked: protocol.StopFocus) -> None:
         """End an observer."""
@@ -298,6 +293,13 @@ class Served:
             call.pause()
         elif asked.what == "resume":
             call.resume()
+
+
+def _not_own(path: str) -> UnknownWorkspace:
+    """Return the failure of a request for a workspace of another member."""
+    return UnknownWorkspace(
+        f"workspace `{path}` is not of this system", Structure("unknown_workspace", (path,))
+    )
 
 
 def _gone(number: int) -> OperationOutcome:
