@@ -42,13 +42,21 @@ class ArtifactNames:
         """Return the artifact of this run with a number, or None if it is gone."""
         return self._by_number.get((self.run, number))
 
-    def find(self, name: ArtifactName, creator: str | None = None) -> ArtifactId:
+    def announced(self, name: ArtifactName, creator: str | None) -> ArtifactId:
+        """Return an artifact that its own member names. Others may have sent it before, under any name."""
+        artifact = self.find(name)
+        run, _, artifact.name, artifact.type_name, workspace = name
+        artifact.workspace, artifact.creator = self._path_of(run, workspace), creator
+        self._names[artifact] = name
+        return artifact
+
+    def find(self, name: ArtifactName) -> ArtifactId:
         """Return the artifact with a name. One of another run is made at its first use."""
         run, number, plain_name, type_name, workspace = name
         known = self._by_number.get((run, number))
         if known is None:
             path = self._path_of(run, workspace)
-            known = ArtifactId(plain_name, type_name, path, number, creator)
+            known = ArtifactId(plain_name, type_name, path, number, None)
             if run != self.run:  # otherwise it is gone: an id that nothing knows
                 self._know(name, known)
         return known

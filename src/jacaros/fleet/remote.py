@@ -373,7 +373,7 @@ class RemoteWorkspace(ports.Workspace):
                 self._remove(artifact)
             return
         _, name, type_name, creator, offers = data
-        found = self._all.names.find((self._all.run, number, name, type_name, self.its_path), creator)
+        found = self._all.names.announced((self._all.run, number, name, type_name, self.its_path), creator)
         is_new = found not in self._offers
         self._offers[found] = frozenset(offers)
         if is_new:
