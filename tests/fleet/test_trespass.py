@@ -202,3 +202,24 @@ async def test_nobody_uses_the_rights_of_another_member(pair: Pair) -> None:
     assert (await pair.request(lambda call: create("/main", call))).ok
     ended = await pair.request(lambda call: create("/main@evil", call))
     assert (ended.ok, ended.message) == (False, "workspace `/main@evil` is not of this system")
+
+
+@trespass
+async def test_an_artifact_has_the_name_that_its_own_member_gives(pair: Pair) -> None:
+    ann = pair.good.add_agent("ann", "")
+    run = pair.members["evil"].me.incarnation
+    reference = [8, run, 99, "fake", "Fake", "/elsewhere"]
+    await pair.say(message("tell", [1, "look", reference]))
+    sent = ann.ask("look(Id)")
+    await pair.say(protocol.ArtifactNews("/main", 99, (99, "lamp", "Lamp", "eve", ["shine/0"])))
+    lamp = pair.good.environment.workspace("/main@evil").lookup("lamp")
+    assert sent == {"Id": lamp}
+    assert (lamp.path, lamp.type_name, lamp.creator) == ("/main@evil/lamp", "Lamp", "eve")
+
+
+@trespass
+async def test_warnings_are_short_lines_of_printable_characters(pair: Pair) -> None:
+    await pair.say(protocol.WorkspaceNews("/\n[good] all is well\x1b[2J" + "x" * 10_000 + "/y", True))
+    warning = pair.lines[-1]
+    assert warning.startswith("[fleet] evil: unknown workspace `/ [good] all is well\\x1b[2J")
+    assert len(warning) < 600

@@ -17,6 +17,7 @@ from jacaros.fleet.artifacts import ArtifactNames
 from jacaros.fleet.carrier import Carrier, MemberId
 from jacaros.fleet.causes import Causes
 from jacaros.fleet.channel import Malformed, read_packet
+from jacaros.fleet.names import one_line
 from jacaros.fleet.peer import Peer
 from jacaros.fleet.rights import Rights
 from jacaros.fleet.visits import Visits, is_visitor
@@ -92,7 +93,7 @@ class Member:
     def _warn(self, text: str, about: str = "") -> None:
         if (about or text) not in self._reported and len(self._reported) < _MOST:
             self._reported.add(about or text)
-            self._system.console.log(f"[fleet] {text}", "warning")
+            self._system.console.log(f"[fleet] {one_line(text)}", "warning")
 
     def _path_of(self, run: str, workspace: str) -> str:
         peer = next((each for each in self.peers.values() if each.id.incarnation == run), None)

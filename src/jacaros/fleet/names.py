@@ -1,4 +1,4 @@
-"""Names of fleets and members, which become parts of key expressions, paths and certificates."""
+"""Names of fleets and members, which become parts of key expressions, paths and certificates, and words of members."""
 
 import re
 
@@ -31,3 +31,8 @@ def check_name(what: str, name: str) -> None:
             f"error: `{name}` cannot be the name of a member: a folder of keys has that name\n"
             f"{help_line(f'call it {name}1')}"
         )
+
+
+def one_line(text: str) -> str:
+    """Return a text with words of another member as one line that a terminal shows as it is."""
+    return printable(" ".join(text.split()))

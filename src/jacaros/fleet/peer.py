@@ -18,6 +18,7 @@ from jacaros.fleet.artifacts import ArtifactNames
 from jacaros.fleet.carrier import MemberId
 from jacaros.fleet.causes import Causes
 from jacaros.fleet.channel import Channel, Packet
+from jacaros.fleet.names import one_line
 from jacaros.fleet.remote import Calls, RemoteWorkspace, RemoteWorkspaces
 from jacaros.fleet.rights import OPERATE, SEE, SEND, STOP, TELL_HOW
 from jacaros.fleet.served import Served
@@ -144,7 +145,7 @@ class Peer:
         """Write a warning about it into the log, once; or once *about* something."""
         if (about or text) not in self._reported and len(self._reported) < _REPORTS:
             self._reported.add(about or text)
-            self._system.console.log(f"[fleet] {self.name}: {text}", "warning")
+            self._system.console.log(f"[fleet] {self.name}: {one_line(text)}", "warning")
 
     def heard(self, packet: Packet) -> None:
         """Take in a packet."""
