@@ -82,7 +82,7 @@ async def test_why_names_the_plan_of_the_sender_even_if_only_the_receiver_record
 
 
 @in_fleet("lab", "hall")
-async def test_why_goes_on_to_the_other_system_from_inside_a_plan(systems: Fleet) -> None:
+async def test_why_continues_in_the_other_system_from_inside_a_plan(systems: Fleet) -> None:
     ann = systems["lab"].add_agent("ann", SENDER)
     systems["hall"].add_agent("bob", "+task(R) <- .wait(100); !do(R). +!do(R) <- .print(R).")
     await record(systems["hall"])
@@ -146,7 +146,7 @@ async def test_an_operation_and_what_it_changed_name_the_plan_behind_them(system
 
 
 @in_fleet("lab", "hall")
-async def test_no_step_is_described_while_nobody_records(systems: Fleet) -> None:
+async def test_no_step_is_described_while_no_member_records(systems: Fleet) -> None:
     sent: list[bytes] = []
     carry = systems.network.carry
 

@@ -164,13 +164,13 @@ def test_clocks_of_both_sides_are_compared(ahead: float) -> None:
 @pytest.mark.parametrize(
     ("datagram", "what"),
     [
-        (b"", "bytes that are no message of JaCaROS"),
-        (b"GET / HTTP/1.1", "bytes that are no message of JaCaROS"),
+        (b"", "bytes that are not a message of JaCaROS"),
+        (b"GET / HTTP/1.1", "bytes that are not a message of JaCaROS"),
         (b"JF\x07\x90", "version 7 of the fleet's messages, this one has version 1"),
         (b"JF\x01", "a damaged message"),
         (b"JF\x01\x90", "a damaged message"),
     ],
 )
-def test_what_is_no_packet_is_named(datagram: bytes, what: str) -> None:
+def test_what_is_not_a_packet_is_named(datagram: bytes, what: str) -> None:
     with pytest.raises(Malformed, match=what):
         read_packet(datagram)

@@ -2,7 +2,7 @@
 
 import asyncio
 from collections.abc import Awaitable, Callable, Sequence
-from itertools import count
+from secrets import token_hex
 
 import pytest
 from queues import SimulatedNetwork
@@ -61,7 +61,6 @@ class Counter(Artifact):
 
 Carriers = Callable[[str], Carrier]
 """Returns the access of a member to the network."""
-_FLEETS = count(1)
 
 
 def simulated() -> Carriers:
@@ -72,7 +71,7 @@ def simulated() -> Carriers:
 
 def over_zenoh() -> Carriers:
     """Zenoh, on this computer alone."""
-    fleet = f"contract{next(_FLEETS)}"
+    fleet = f"contract-{token_hex(4)}"
     return lambda name: ZenohCarrier(Network(fleet, name))
 
 

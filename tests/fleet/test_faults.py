@@ -180,7 +180,7 @@ async def test_nothing_is_kept_of_a_disposed_artifact(two: Two) -> None:
 
 
 @fleet_test
-async def test_a_member_of_the_same_name_is_refused_and_shuts_nobody_out(two: Two) -> None:
+async def test_a_member_of_the_same_name_is_refused_and_shuts_none_out(two: Two) -> None:
     with pytest.raises(UsageError, match="has a member called there already"):
         async with two.member("there"):
             pass
@@ -340,7 +340,7 @@ def test_no_payload_disturbs_anything_else(payloads: list[bytes]) -> None:
                 await ann.achieve("go").wait(timeout=2)
                 assert ann.believes("a(_)")
             assert not errors
-            assert sum("no valid message" in each for each in two.warnings) <= 1
+            assert sum("invalid message" in each for each in two.warnings) <= 1
 
     jacaros.run(main(), clock="fast")
 
@@ -364,7 +364,7 @@ async def test_datagrams_of_another_kind_or_version_are_refused_once(two: Two) -
             here.received(stranger, datagram)
     here.received(MemberId("older", "1"), b"JF\x00...")
     assert two.warnings == [
-        "here: [fleet] ignored from stranger: bytes that are no message of JaCaROS",
+        "here: [fleet] ignored from stranger: bytes that are not a message of JaCaROS",
         f"here: [fleet] ignored from older: version 0 of the fleet's messages, this one has version {VERSION}",
     ]
     assert set(here.peers) == {"there"}

@@ -1,4 +1,4 @@
-"""Members with keys, and strangers: nobody without the right key is let in or heard, and the members run on."""
+"""Members with keys, and strangers: none without the right key is let in or heard, and the members run on."""
 
 import socket
 import threading
@@ -177,7 +177,7 @@ def test_members_talk_to_those_behind_a_router(lab: Lab) -> None:
 
 
 def test_a_recorded_connection_cannot_be_replayed(lab: Lab) -> None:
-    """Bytes of a whole session of a member, sent again by somebody who has listened on the line."""
+    """Bytes of a whole session of a member, sent again by a stranger who has listened on the line."""
     recorded = bytearray()
     with socket.create_server(("127.0.0.1", 0)) as proxy:
         threading.Thread(target=forward, args=(proxy, lab.port, recorded), daemon=True).start()

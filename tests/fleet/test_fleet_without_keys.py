@@ -1,4 +1,4 @@
-"""Members on one computer without keys: they find each other without a server, and nobody else finds them."""
+"""Members on one computer without keys: they find each other without a server, and no other user finds them."""
 
 import os
 import uuid
@@ -45,9 +45,7 @@ def listening(pid: int) -> list[str]:
     return found
 
 
-def test_members_find_each_other_within_a_second_and_whoever_dies_the_rest_goes_on(
-    fleet: str, stack: ExitStack
-) -> None:
+def test_members_find_each_other_within_a_second_and_outlive_each_other(fleet: str, stack: ExitStack) -> None:
     first, second = (stack.enter_context(Member(fleet, name)).joined() for name in ("first", "second"))
     assert first.sees("second") + second.sees("first") < JOINED
     first.kill()

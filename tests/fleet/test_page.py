@@ -152,7 +152,7 @@ def test_the_page_shows_all_systems_and_follows_them() -> None:
 
 
 @needs_chromium
-def test_an_address_that_is_none_is_no_link() -> None:
+def test_an_invalid_address_is_not_a_link() -> None:
     async def scene(systems: Fleet) -> None:
         systems["lab"].system.fleet.show_page("javascript:alert(1)")  # type: ignore[union-attr]
         async with view(systems["hall"]) as address, chromium() as page:

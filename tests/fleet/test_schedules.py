@@ -12,7 +12,7 @@ from jacaros.artifacts.env.property import Observation
 SCHEDULES = 1000
 PARTS = 10
 LATE = 5.0
-"""Seconds within which an operation is cancelled whose caller has been told that it failed."""
+"""Seconds within which an operation is cancelled whose caller knows that it failed."""
 
 
 @pytest.mark.slow

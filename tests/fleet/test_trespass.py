@@ -195,7 +195,7 @@ async def test_a_malformed_request_fails(pair: Pair) -> None:
 
 
 @trespass
-async def test_nobody_uses_the_rights_of_another_member(pair: Pair) -> None:
+async def test_no_member_uses_the_rights_of_another_one(pair: Pair) -> None:
     def create(workspace: str, call: int) -> protocol.Create:
         return protocol.Create(call, workspace, "mine", "Blackboard", [2], "eve")
 

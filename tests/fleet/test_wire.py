@@ -94,6 +94,6 @@ def test_an_object_of_python_cannot_cross(value: object) -> None:
         *([0, ["a", 1, 2]], [0, ["a", 0, 0, 99]], [2, [2, []]]),
     ],
 )
-def test_data_of_a_stranger_that_is_no_term_is_refused(data: object) -> None:
+def test_data_of_a_stranger_that_is_not_a_term_is_refused(data: object) -> None:
     with pytest.raises((ValueError, LookupError, TypeError)):
         WIRE.to_term(data)

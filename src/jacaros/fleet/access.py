@@ -1,4 +1,4 @@
-"""What each member may do, as access rules of Zenoh: nobody speaks in the name of another one, or hears what is for it.
+"""What each member may do, as access rules of Zenoh: none speaks in the name of another one, or hears what is for it.
 
 Each member, and each router, applies these rules to all that comes from a link, and knows who is at its other end by the
 certificate. Zenoh matches names in certificates exactly, so the rules list all members. What they do not list is denied,

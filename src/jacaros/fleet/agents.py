@@ -80,7 +80,7 @@ class FleetAgents:
         return [name for name, members in self._holders.items() if member in members]
 
     def find(self, name: str) -> Mailbox | None:
-        """Return the mailbox of an agent, by its bare or full name. None: there is none, or more than one."""
+        """Return the mailbox of an agent, by its bare or full name. None if it does not exist, or more than one has it."""
         bare, at, member = name.rpartition("@")
         if at:
             return self._find_at(bare, member)

@@ -31,7 +31,7 @@ class Listener(Protocol):
         """Hear that another member is there (True) or no longer answers (False), killed, frozen or cut off."""
 
     def refused(self, sender: str, why: str) -> None:
-        """Hear of something that is no datagram of a member."""
+        """Hear of something that did not come from a member."""
 
 
 class Carrier(Protocol):

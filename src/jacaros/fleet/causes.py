@@ -37,7 +37,7 @@ class Causes:
     # ---- what happens here
 
     def of_step(self, agent: str) -> StepData | None:
-        """Return the step that an agent is at; None if nobody records, or it is at none."""
+        """Return the step that an agent is at; None if no member records, or it is not in a plan."""
         if not self._wanted:
             return None
         host = self._system.directory.find(agent)
@@ -54,7 +54,7 @@ class Causes:
         return None if request.agent is None else self.of_step(request.agent)
 
     def of(self, cause: Cause | None) -> StepData | None:
-        """Return the step that led to a cause, if it is known and somebody records."""
+        """Return the step that led to a cause, if it is known and a member records."""
         tracer = self._system.tracer
         if cause is None or tracer is None or not self._wanted:
             return None
@@ -63,7 +63,12 @@ class Causes:
 
     def _data(self, step: Origin) -> StepData:
         agent = step.agent if "@" in step.agent else f"{step.agent}@{self._member}"
-        return agent, step.event, PurePath(step.file).name, step.line  # folders are nobody else's business
+        return (
+            agent,
+            step.event,
+            PurePath(step.file).name,
+            step.line,
+        )  # other members need not know the folders
 
     # ---- what comes from others
 

@@ -45,19 +45,19 @@ _SAMPLES = 16
 _PRECISION = 0.001
 """Seconds by which two right measurements of the clocks may differ, whatever their delays: clocks drift."""
 NOTABLE = 0.1
-"""Seconds by which the offset of a clock changes before programs are told."""
+"""Seconds by which the offset of a clock changes before programs notice."""
 _FEW = 3
 """Measurements from which one with a long delay counts: the network has no shorter one."""
 
 
 _Number = Annotated[int, msgspec.Meta(ge=0, le=1 << 62)]
-"""Of a payload. Far more than anything counts to, and far from what cannot be written any more."""
+"""Of a payload. Far more than anything counts to, and far from what can no longer be written."""
 _Seconds = Annotated[float, msgspec.Meta(ge=-1e12, le=1e12)]
 """A time, neither infinite nor NaN: the clocks are computed from it."""
 
 
 class Malformed(Exception):
-    """Bytes that are no packet, or of another version. The text says what they are."""
+    """Bytes that do not form a packet, or of another version. The text says what they are."""
 
 
 class Packet(msgspec.Struct, array_like=True, forbid_unknown_fields=True):
@@ -93,7 +93,7 @@ def read_packet(datagram: bytes) -> Packet:
         Malformed: it has none, or one of another version.
     """
     if datagram[:2] != _MAGIC or len(datagram) < 3:
-        raise Malformed("bytes that are no message of JaCaROS")
+        raise Malformed("bytes that are not a message of JaCaROS")
     if datagram[2] != VERSION:
         raise Malformed(f"version {datagram[2]} of the fleet's messages, this one has version {VERSION}")
     try:

@@ -39,7 +39,7 @@ GOODBYE = 0.5
 _DEPARTED = 100
 """Runs that have ended whose last datagrams are ignored."""
 _FORMER = 8
-"""Lost runs whose names others have taken, and which are known if they return after all."""
+"""Lost runs whose names others have taken, and which are known if they return."""
 _MOST = 1000
 """Other members, and different warnings, at most."""
 
@@ -261,7 +261,7 @@ class Member:
         self._system.scheduler.hurry()
 
     def refused(self, sender: str, why: str) -> None:
-        """Report something that is no datagram of a member, once for each sender."""
+        """Report something that did not come from a member, once for each sender."""
         self._warn(f"ignored from {sender}: {why}", sender)
 
     def present(self, member: MemberId, is_present: bool) -> None:
@@ -297,7 +297,7 @@ class Member:
             if known.is_there:
                 return None  # if it is another member of this name, it tells so itself
             self._replace(known)
-        # A channel knows the numbers of both sides, so a run that returns after all needs its former one.
+        # A channel knows the numbers of both sides, so a run that returns needs its former one.
         peer = self.peers[member.name] = (
             self._former.pop(member) if member in self._former else self._new_peer(member)
         )
@@ -351,7 +351,7 @@ class Member:
             watcher(name, state)
 
     def _expire(self, peer: Peer) -> None:
-        """It was lost for too long. It may return after all."""
+        """It was lost for too long. It may still return."""
         peer.forget()
         peer.state = ""
         self._tell_watchers(peer.name, "left")

@@ -104,7 +104,7 @@ class Operator:
             seen.problem = str(error)
 
     def refused(self, sender: str, why: str) -> None:
-        """Ignore what is no datagram of a member: a visitor looks at members only."""
+        """Ignore what did not come from a member: a visitor looks at members only."""
 
     def _received(self, member: str, payload: bytes) -> None:
         seen = self.members[member]

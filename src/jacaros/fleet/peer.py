@@ -48,7 +48,7 @@ class Peer:
     Args:
         id: that run.
         system: the system of this member.
-        announced: what others are told of this member.
+        announced: what this member says of itself.
         agents: agents of all other members.
         names: names of artifacts.
         causes: describes what led to something.
@@ -164,7 +164,7 @@ class Peer:
             raise
         except Exception as error:  # whatever it says, nothing here ends because of it
             kind = type(error).__name__
-            self.report(f"dropped something that is no valid message: {kind}: {error}", "invalid")
+            self.report(f"dropped an invalid message: {kind}: {error}", "invalid")
 
     def _allowed(self, right: str, handler: Callable[[Any], None], asked: Any) -> None:
         """Do what it asks for if it may. It gets an outcome in any case."""
@@ -425,7 +425,7 @@ class Peer:
         if said.in_reply_to is not None:
             self._asked.pop(said.in_reply_to, None)
             if self._failed.pop(said.in_reply_to, False):
-                return ""  # its asker has been told that the member was lost, and would take it for news
+                return ""  # its asker knows that the member was lost, and would take it for news
         sender, content = self._agents.called(said.sender, self.name), self._wire.to_term(said.content)
         message = SpeechAct(said.performative, sender, said.receiver, content, said.id, said.in_reply_to)
         if self._system.directory.find_here(said.receiver) is None:
@@ -448,7 +448,7 @@ class Peer:
 
     def _on_returned(self, said: protocol.Returned) -> None:
         if self._asked.pop(said.id, None) is None and said.performative.startswith(_ASKING):
-            return  # the asker has been told that the member was lost
+            return  # the asker knows that the member was lost
         receiver, content = self._agents.called(said.receiver, self.name), self._wire.to_term(said.content)
         message = SpeechAct(said.performative, said.sender, receiver, content, said.id)
         self._system.mailboxes.returned(message, said.reason)

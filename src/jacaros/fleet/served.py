@@ -202,7 +202,7 @@ class Served:
         environment = self._environment()
         workspace = environment.workspace(asked.workspace)
         if workspace not in environment.own():
-            raise _not_own(asked.workspace)  # nobody uses the rights that this member has at others
+            raise _not_own(asked.workspace)  # members do not use the rights that this one has at others
         arguments, creator = self._wire.to_value(asked.arguments), self._caller(asked.creator)
         self._begun.add(asked.call)
         self._keep(asked.call, workspace.create(asked.name, asked.type_name, arguments, creator, made))

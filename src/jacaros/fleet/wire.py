@@ -119,7 +119,7 @@ class Wire:
         """Return data as a term.
 
         Raises:
-            ValueError: it is no term.
+            ValueError: it is not a term.
         """
         return self._to_term(data, {})
 
@@ -216,7 +216,7 @@ class Wire:
             outs: collects output parameters.
 
         Raises:
-            ValueError: it is no value.
+            ValueError: it is not a value.
         """
         if data.__class__ is not list:
             return data
