@@ -57,6 +57,7 @@ class ZenohCarrier:
         self._root = f"{_ROOT}/{network.fleet}"
         self._session: Any = None
         self._publishers: dict[MemberId, Any] = {}
+        self._keys: dict[MemberId, Any] = {}
         self._arrived: deque[tuple[str, Any]] = deque()
         self._is_called = False
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -183,9 +184,25 @@ class ZenohCarrier:
             self._listener.received(member, sample.payload.to_bytes())
         elif member != self._me:
             is_there = sample.kind == zenoh.SampleKind.PUT
-            if not is_there and (publisher := self._publishers.pop(member, None)) is not None:
-                publisher.undeclare()
+            self._expect(member, is_there)
             self._listener.present(member, is_there)
+
+    def _expect(self, member: MemberId, is_there: bool) -> None:
+        """Expect datagrams of a member from now on, or no longer.
+
+        Zenoh finds the subscriber of a declared key once. For other keys it compares texts with each datagram.
+        """
+        if is_there and member not in self._keys:
+            self._keys[member] = self._session.declare_keyexpr(self._key(self._me, member))
+        elif not is_there:
+            if (key := self._keys.pop(member, None)) is not None:
+                self._session.undeclare(key)
+            if (publisher := self._publishers.pop(member, None)) is not None:
+                publisher.undeclare()
+
+    def _key(self, receiver: MemberId, sender: MemberId) -> str:
+        to, by = "/".join(receiver), "/".join(sender)
+        return f"{self._root}/to/{to}/from/{by}"
 
     def send(self, to: MemberId, datagram: bytes) -> None:
         """Send a datagram. Zenoh drops it if the link is congested."""
@@ -193,9 +210,8 @@ class ZenohCarrier:
             return
         publisher = self._publishers.get(to)
         if publisher is None:
-            me = self._me
             publisher = self._publishers[to] = self._session.declare_publisher(
-                f"{self._root}/to/{to.name}/{to.incarnation}/from/{me.name}/{me.incarnation}",
+                self._key(to, self._me),
                 congestion_control=zenoh.CongestionControl.DROP,
                 express=True,
             )
