@@ -9,7 +9,9 @@ from queues import SimulatedNetwork
 
 import jacaros
 from jacaros import GoalFailed, Mas
+from jacaros.agents.mind.state.plan import Failure
 from jacaros.artifacts import Artifact, Atom, OperationFailed, Out, Structure, link, operation
+from jacaros.fleet import protocol
 from jacaros.fleet.carrier import Carrier
 from jacaros.fleet.joining import joining
 from jacaros.fleet.member import Member
@@ -53,6 +55,10 @@ class Counter(Artifact):
     @operation
     def opaque(self, made: Out) -> None:
         made.set(object())
+
+    @operation
+    def fill(self, made: Out) -> None:
+        made.set("x" * protocol.LARGEST)
 
     @link
     def take(self, number: int) -> None:
@@ -383,3 +389,20 @@ async def test_what_cannot_cross_fails_with_its_class(two) -> None:
     )
     await ann.achieve("go").wait(timeout=9)
     await bob.achieve("go").wait(timeout=9)
+
+
+@on_both()
+async def test_what_is_too_large_fails_and_delays_nothing(two) -> None:
+    await two.shared()
+    bob = two.there.add_agent("bob", "")
+    await two.settled()
+    painter = two.there.session("painter", workspace="/main/lab")
+    large = "x" * protocol.LARGEST
+    with pytest.raises(OperationFailed, match="more than 32 MiB"):
+        await painter.act("inc", large)
+    with pytest.raises(OperationFailed, match="more than 32 MiB"):
+        await painter.act("fill", Out())
+    with pytest.raises(Failure):
+        two.here.send("bob@there", "tell", Structure("picture", (large,)))
+    two.here.send("bob@there", "tell", "small")
+    await bob.until("small", timeout=5)

@@ -136,10 +136,18 @@ class Peer:
         """Bytes that have not arrived there."""
         return self.channel.backlog
 
-    def say(self, said: protocol.Said) -> None:
-        """Say something. Without effect while it does not answer: it gets the whole picture when it returns."""
+    def say(self, said: protocol.Said) -> bool:
+        """Say something. Without effect while it does not answer: it gets the whole picture when it returns.
+
+        Return False if it is too large.
+        """
         if self.is_there:
-            self.channel.send(protocol.write(said))
+            payload = protocol.write(said)
+            if len(payload) > protocol.LARGEST:
+                self.report(f"{type(said).__name__}: {protocol.TOO_LARGE}")
+                return False
+            self.channel.send(payload)
+        return True
 
     def report(self, text: str, about: str = "") -> None:
         """Write a warning about it into the log, once; or once *about* something."""
@@ -390,12 +398,14 @@ class Peer:
             message.in_reply_to,
             self._causes.of_step(message.sender),
         )
+        payload = protocol.write(said)
+        if len(payload) > protocol.LARGEST:
+            raise Failure((_ERROR, atom("not_sendable")), (_ERROR_MSG, String(protocol.TOO_LARGE)))
         if message.performative.startswith(_ASKING):
             self._note_question(message)
-            self.channel.send(protocol.write(said))
+            self.channel.send(payload)
         else:
-            lost = partial(self._system.mailboxes.returned, message, "unconfirmed")
-            self.channel.send(protocol.write(said), lost)
+            self.channel.send(payload, partial(self._system.mailboxes.returned, message, "unconfirmed"))
 
     def _note_question(self, message: SpeechAct) -> None:
         self._asked[message.id] = message

@@ -11,6 +11,10 @@ StepData = tuple[str, str, str, int]
 PropertyData = tuple[int, str, Any, Any]
 """Key, name, values and annotations of a property."""
 
+LARGEST = 32 << 20
+"""Bytes of one thing that is said. A network drops much larger ones, however often they are sent again."""
+TOO_LARGE = f"values of more than {LARGEST >> 20} MiB cannot be sent to another system: send them in parts"
+
 
 class _Said(msgspec.Struct, array_like=True, tag=True):
     """One thing that a member says. The tag is the name of the class."""

@@ -63,8 +63,10 @@ class Calls:
         """Ask for something. *said* gets the number of the call."""
         self._count += 1
         self._waiting[self._count] = done
-        self._line.say(said(self._count))
-        return _Call(self, self._count)
+        call = _Call(self, self._count)
+        if not self._line.say(said(self._count)):
+            self.ended(protocol.Ended(self._count, False, protocol.TOO_LARGE, None, [], None))
+        return call
 
     def handle(self, call: int, what: str) -> None:
         """Cancel, pause or resume a call, unless it has ended."""

@@ -27,8 +27,8 @@ class Line(Protocol):
     def is_behind(self) -> bool:
         """Whether what is sent now would wait on its way."""
 
-    def say(self, said: protocol.Said) -> None:
-        """Say something to it."""
+    def say(self, said: protocol.Said) -> bool:
+        """Say something to it. Return False if it is too large."""
 
     def report(self, text: str) -> None:
         """Write a warning about it into the log."""
@@ -191,7 +191,8 @@ class Served:
         except NotSendable as error:
             results, outcome = [], not_sendable(error)
         reason = self.data(outcome.reason, "a reason")
-        self.line.say(protocol.Ended(call, outcome.ok, outcome.message, reason, results, made))
+        if not self.line.say(protocol.Ended(call, outcome.ok, outcome.message, reason, results, made)):
+            self.line.say(protocol.Ended(call, False, protocol.TOO_LARGE, None, [], made))
 
     def on_create(self, asked: protocol.Create) -> None:
         """Create an artifact of a type that this member knows."""
