@@ -103,6 +103,9 @@ class Operator:
         except Malformed as error:
             seen.problem = str(error)
 
+    def all_received(self) -> None:
+        """Do nothing: each answer is for a command of its own."""
+
     def refused(self, sender: str, why: str) -> None:
         """Ignore what did not come from a member: a visitor looks at members only."""
 
