@@ -27,7 +27,7 @@ from jacaros.fleet.rights import Rights
 from jacaros.runtime.clock import clock_of
 from jacaros.runtime.mas.system import System
 
-CALM = 25.0
+CALM = 14.0
 """Seconds after which everything has an outcome once the network is whole."""
 
 
@@ -324,7 +324,7 @@ class Fleet:
         note = self.notes[str(number)] = Note("operation", run, to)
         self.operations.append(note)
         later = self.random.random() < 0.5
-        delay = self.random.choice([0.1, 2.0, 15.0]) * self.random.random()
+        delay = self.random.choice([0.1, 2.0, 10.0]) * self.random.random()
         arguments = (number, delay) if later else (number,)
 
         def done(outcome: OperationOutcome) -> None:
