@@ -4,6 +4,7 @@ plain.py FLEET NAME [PARTNER]
 """
 
 import itertools
+import os
 import sys
 import threading
 import time
@@ -92,15 +93,16 @@ class Asking:
 def main(fleet: str, name: str, partner: str) -> None:
     """Run one process until its input ends."""
     with zenoh.open(session_config(Network(fleet, name))) as session:
-        if not partner:
+        if partner:
+            asking = Asking(session, partner)
+            orders = Orders()
+            orders.ready()
+            while order := orders.next():
+                what, amount = order
+                orders.answer(getattr(asking, what)(amount))
+        else:
             answering(session, name)
-            return
-        asking = Asking(session, partner)
-        orders = Orders()
-        orders.ready()
-        while order := orders.next():
-            what, amount = order
-            orders.answer(getattr(asking, what)(amount))
+    os._exit(0)  # a thread of Zenoh that survives the interpreter would abort the process
 
 
 if __name__ == "__main__":
