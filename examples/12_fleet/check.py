@@ -1,6 +1,6 @@
 """Judge whether the robots cleaned the whole building together, and never bumped.
 
-Judged from the ground truth of all their worlds, also those of robots that were killed.
+Judged from the ground truth of the worlds of all robots that ended by themselves.
 """
 
 import sys
