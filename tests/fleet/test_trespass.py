@@ -16,6 +16,7 @@ from jacaros.fleet.channel import VERSION, Malformed, read_packet
 from jacaros.fleet.joining import joining
 from jacaros.fleet.member import Member
 from jacaros.fleet.peer import Peer
+from jacaros.fleet.visits import visitor_id
 from jacaros.runtime.clock import clock_of
 
 
@@ -223,3 +224,16 @@ async def test_warnings_are_short_lines_of_printable_characters(pair: Pair) -> N
     warning = pair.lines[-1]
     assert warning.startswith("[fleet] evil: unknown workspace `/ [good] all is well\\x1b[2J")
     assert len(warning) < 600
+
+
+@trespass
+async def test_nothing_that_a_visitor_says_disturbs(pair: Pair) -> None:
+    deep = protocol.write(message("tell", None))
+    deep = deep.replace(b"\xc0", b"\x91" * 100_000 + b"\xc0", 1)
+    visitor = visitor_id("evil")
+    packet = msgspec.msgpack.encode([1, 1, 0, [b"hello", deep], 0.0, 0.0, 0.0])
+    good = pair.members["good"]
+    good.present(visitor, True)
+    good.received(visitor, b"JF%c%b" % (VERSION, packet))
+    await pair.say(message("tell", [0, "done"]))
+    assert set(good.peers) == {"evil"}

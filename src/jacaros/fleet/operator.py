@@ -113,7 +113,7 @@ class Operator:
         seen = self.members[member]
         try:
             said = protocol.read(payload)
-        except msgspec.MsgspecError as error:
+        except (msgspec.MsgspecError, RecursionError) as error:
             seen.problem = f"a damaged message ({error})"
             return
         if isinstance(said, protocol.Here):

@@ -84,7 +84,7 @@ class Visits:
     def _received(self, visitor: MemberId, payload: bytes) -> None:
         try:
             said = protocol.read(payload)
-        except msgspec.MsgspecError:
+        except (msgspec.MsgspecError, RecursionError):
             return
         if isinstance(said, protocol.Ask) and self._channels[visitor].backlog <= _FULL:
             self._answer(visitor, said)
