@@ -408,3 +408,25 @@ async def test_a_message_of_many_megabytes_delays_no_other_for_good(two: Two) ->
     two.here.send("bob@there", "tell", jacaros.Structure("b", ("x" * (FULL // 2),)))
     two.here.send("cat@there", "tell", "c")
     await cat.until("c", timeout=2)
+
+
+def test_a_sender_keeps_its_name_over_a_cut() -> None:
+    lines: list[str] = []
+
+    async def main() -> None:
+        two = Two()
+        async with (
+            two.member("here") as here,
+            two.member("there", on_print=lambda _, text: lines.append(text)) as there,
+        ):
+            ann = here.add_agent("ann", "+!say(X) <- .send(bob, tell, said(X)).")
+            bob = there.add_agent("bob", "+said(X)[source(S)] <- .print(X, S).")
+            await here.sleep(1)
+            two.network.cut("here", "there")
+            await ann.achieve("say(1)").wait(timeout=1)
+            await here.sleep(1)
+            two.network.heal("here", "there")
+            await bob.until("said(1)", timeout=1)
+            assert lines == ["1ann"]
+
+    jacaros.run(main(), clock="fast")

@@ -61,6 +61,7 @@ class FleetAgents:
         self._member, self._find_own, self._report, self._renamed = member, find_own, report, renamed
         self._posts: dict[str, Post] = {}
         self._holders: dict[str, dict[str, _RemoteMailbox]] = {}
+        self._away: dict[str, set[str]] = {}
         self._reported: set[tuple[str, str]] = set()
 
     def names(self) -> Sequence[str]:
@@ -73,7 +74,12 @@ class FleetAgents:
 
     def called(self, name: str, member: str) -> str:
         """Return how an agent of another member is called here, such as ``bob`` or ``bob@lab``."""
-        return self._called(name, member) if member in self._holders.get(name, ()) else f"{name}@{member}"
+        holders = self._holders.get(name, ())
+        if member in holders:
+            return self._called(name, member)
+        # After a cut, messages come before the member has said again which agents it has.
+        is_unique = name in self._away.get(member, ()) and not holders and self._find_own(name) is None
+        return name if is_unique else f"{name}@{member}"
 
     def of(self, member: str) -> list[str]:
         """Return the names that the agents of another member have there."""
@@ -97,12 +103,19 @@ class FleetAgents:
     def came(self, member: str, post: Post) -> None:
         """A member answers: its agents can be reached."""
         self._posts[member] = post
+        self.forget(member)
 
     def went(self, member: str) -> None:
         """A member does not answer."""
         self._posts.pop(member, None)
-        for name in [name for name, members in self._holders.items() if member in members]:
+        names = self.of(member)
+        self._away.setdefault(member, set()).update(names)
+        for name in names:
             self.know(name, member, False)
+
+    def forget(self, member: str) -> None:
+        """Forget which agents a member had before it was lost."""
+        self._away.pop(member, None)
 
     def know(self, name: str, member: str, present: bool) -> None:
         """Hear that a member has an agent, or no longer. A name with ``@`` would be that of an agent of another member."""

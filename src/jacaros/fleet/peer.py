@@ -243,6 +243,7 @@ class Peer:
             self._on_workspace(protocol.WorkspaceNews(path, False))
         self._names.forget_run(self.id.incarnation)
         self._failed.clear()
+        self._agents.forget(self.name)
         self._causes.want(self.name, False)
 
     def record(self) -> MemberRecord:
