@@ -62,7 +62,6 @@ class FleetAgents:
         self._posts: dict[str, Post] = {}
         self._holders: dict[str, dict[str, _RemoteMailbox]] = {}
         self._away: dict[str, set[str]] = {}
-        self._reported: set[tuple[str, str]] = set()
 
     def names(self) -> Sequence[str]:
         """Return the names of all agents of other members, as they are called here."""
@@ -136,13 +135,12 @@ class FleetAgents:
             self.check(name)
 
     def check(self, name: str) -> None:
-        """Report an agent whose bare name is not unique, once for each member that has it."""
+        """Report an agent whose bare name is not unique."""
         holders = list(self._holders.get(name, ()))
         if self._find_own(name) is not None:
             holders.append(self._member)
-        if len(holders) < 2 or all((name, each) in self._reported for each in holders):
+        if len(holders) < 2:
             return
-        self._reported.update((name, each) for each in holders)
         full = " and ".join(f"{name}@{each}" for each in sorted(holders))
         meant = f"; here, `{name}` is {name}@{self._member}" if self._member in holders else ""
         self._report(f"the name of agent {name} is not unique in the fleet: write {full}{meant}")

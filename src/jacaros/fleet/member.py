@@ -91,9 +91,10 @@ class Member:
         self._ends: list[Callable[[], object]] = []
 
     def _warn(self, text: str, about: str = "") -> None:
-        if (about or text) not in self._reported and len(self._reported) < _MOST:
-            self._reported.add(about or text)
-            self._system.console.log(f"[fleet] {one_line(text)}", "warning")
+        line = one_line(text)
+        if (about or line) not in self._reported and len(self._reported) < _MOST:
+            self._reported.add(about or line)
+            self._system.console.log(f"[fleet] {line}", "warning")
 
     def _path_of(self, run: str, workspace: str) -> str:
         peer = next((each for each in self.peers.values() if each.id.incarnation == run), None)

@@ -151,9 +151,10 @@ class Peer:
 
     def report(self, text: str, about: str = "") -> None:
         """Write a warning about it into the log, once; or once *about* something."""
-        if (about or text) not in self._reported and len(self._reported) < _REPORTS:
-            self._reported.add(about or text)
-            self._system.console.log(f"[fleet] {self.name}: {one_line(text)}", "warning")
+        line = one_line(text)
+        if (about or line) not in self._reported and len(self._reported) < _REPORTS:
+            self._reported.add(about or line)
+            self._system.console.log(f"[fleet] {self.name}: {line}", "warning")
 
     def heard(self, packet: Packet) -> None:
         """Take in a packet."""
