@@ -111,8 +111,8 @@ def test_a_member_that_is_cut_off_does_not_answer_in_time() -> None:
         ("operator", (), ""),
         ("lab", ("lab=stop",), ""),
         ("lab", ("*=send,stop",), ""),
-        ("lab", (), "`lab` has not the right `stop`"),
-        ("operator", ("operator=see",), "`operator` has not the right `stop`"),
+        ("lab", (), "`lab` lacks the right `stop`"),
+        ("operator", ("operator=see",), "`operator` lacks the right `stop`"),
     ],
 )
 def test_only_a_visitor_with_the_right_stops_a_member(
@@ -246,6 +246,6 @@ def test_the_operator_of_a_fleet_with_keys_stops_a_member_and_others_do_not(
         capsys.readouterr()
         while call(["fleet", "stop", keyless, "robot", *desk]) == 2:  # it has not joined yet
             assert robot.process.poll() is None
-        assert "`desk` has not the right `stop`" in capsys.readouterr().err
+        assert "`desk` lacks the right `stop`" in capsys.readouterr().err
         assert call(["fleet", "stop", keyless, "robot"]) == 0
         assert robot.process.wait(5) == 0

@@ -366,7 +366,7 @@ async def test_questions_and_plans_cross(two) -> None:
     await two.settled(lambda: "bob" in two.here.system.directory.names())
     await ann.achieve("go").wait(timeout=9)
     await two.settled(lambda: len(two.lines) == 4)
-    assert two.warnings == ["here: refused a message: it has not the right `tell_how` (--fleet-allow)"]
+    assert two.warnings == ["here: refused a message: it lacks the right `tell_how` (--fleet-allow)"]
 
 
 _UNSENDABLE = (

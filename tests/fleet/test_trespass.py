@@ -145,9 +145,7 @@ _PLAN = "+!lesson <- .print(taught)."
 async def test_a_question_does_not_permit_plans(pair: Pair) -> None:
     question = await asked(pair, ".send(eve, askOne, secret(_))")
     await pair.say(message("tellHow", _PLAN, question), message("achieve", [0, "lesson"]))
-    assert (
-        pair.lines[-2] == "[fleet] evil: refused a message: it has not the right `tell_how` (--fleet-allow)"
-    )
+    assert pair.lines[-2] == "[fleet] evil: refused a message: it lacks the right `tell_how` (--fleet-allow)"
     assert "taught" not in pair.lines
 
 

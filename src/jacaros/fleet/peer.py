@@ -186,8 +186,8 @@ class Peer:
                 self._served.fail(asked.call, OperationOutcome(False, f"malformed request: {error}"))
                 raise
             return
-        self.report(f"refused a request: it has not the right `{right}` (--fleet-allow)")
-        text = f"{self._system.deployment.name} gives this system not the right `{right}`"
+        self.report(f"refused a request: it lacks the right `{right}` (--fleet-allow)")
+        text = f"{self._system.deployment.name} does not give this system the right `{right}`"
         self.say(protocol.Ended(asked.call, False, text, [1, "not_permitted", [0, right]], [], None))
 
     def _on_execute(self, asked: protocol.Execute) -> None:
@@ -430,7 +430,7 @@ class Peer:
         """Put a message into the mailbox of its receiver. Return why that is impossible, or an empty text."""
         right = TELL_HOW if said.performative in _HOW and not self._is_answer_to_how(said) else SEND
         if right not in self._rights:
-            self.report(f"refused a message: it has not the right `{right}` (--fleet-allow)")
+            self.report(f"refused a message: it lacks the right `{right}` (--fleet-allow)")
             return "not_permitted"
         if not (said.performative + said.sender).isprintable():
             return "malformed"  # they get into logs

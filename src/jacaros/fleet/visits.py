@@ -94,7 +94,7 @@ class Visits:
         refused = "" if asked.what == "ping" else f"unknown request: {asked.what[:20]!r}"
         if stops:
             allowed = STOP in self._rights.of(visitor.name)
-            refused = "" if allowed else f"`{visitor.name}` has not the right `{STOP}`"
+            refused = "" if allowed else f"`{visitor.name}` lacks the right `{STOP}`"
         self._channels[visitor].send(protocol.write(protocol.Answer(asked.call, refused)))
         if stops and not refused:
             self._stop(visitor.name)
