@@ -19,9 +19,9 @@ WIRE = Wire(lambda artifact: ("run", 1, "lamp", "Lamp", "/main"), lambda name: L
 
 def sent(data: object) -> object:
     """Return data as it arrives."""
-    said = protocol.read(protocol.write(protocol.Answer(1, data)))
-    assert isinstance(said, protocol.Answer)
-    return said.data
+    said = protocol.read(protocol.write(protocol.Ended(1, True, None, data, [], None)))
+    assert isinstance(said, protocol.Ended)
+    return said.reason
 
 
 @pytest.mark.parametrize(
