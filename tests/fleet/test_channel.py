@@ -64,7 +64,8 @@ class Link:
 
 STEPS = st.lists(
     st.tuples(
-        st.sampled_from(["keep", "say", "lose a", "lose b", "find a", "find b", "wait"]), st.integers(0, 9)
+        st.sampled_from(["keep", "say", "lose a", "lose b", "find a", "find b", "withdraw", "wait"]),
+        st.integers(0, 9),
     ),
     min_size=5,
     max_size=40,
@@ -87,6 +88,8 @@ def test_what_is_kept_arrives_once_and_in_order(steps: list[tuple[str, int]], se
                     link.a.send(payload, lambda: None)
                 else:
                     link.a.send(payload)
+            elif what == "withdraw":
+                link.a.withdraw()
             elif what == "wait":
                 await link.clock.sleep(number / 10)
             else:
@@ -99,6 +102,24 @@ def test_what_is_kept_arrives_once_and_in_order(steps: list[tuple[str, int]], se
         arrived = link.arrived[1]
         assert [each for each in arrived if each.startswith(b"keep")] == kept
         assert [said.index(each) for each in arrived] == sorted({said.index(each) for each in arrived})
+        assert link.a.backlog == 0
+
+    jacaros.run(main(), clock="fast")
+
+
+def test_what_is_withdrawn_does_not_arrive_and_holds_nothing_up() -> None:
+    async def main() -> None:
+        link = Link()
+        link.loss = 1.0
+        link.a.send(b"operate")
+        link.a.send(b"tell", lambda: None)
+        await link.clock.sleep(1)
+        link.a.withdraw()
+        assert link.a.backlog == len(b"tell")
+        link.a.send(b"picture")
+        link.loss = 0.0
+        await link.clock.sleep(5)
+        assert link.arrived[1] == [b"tell", b"picture"]
         assert link.a.backlog == 0
 
     jacaros.run(main(), clock="fast")

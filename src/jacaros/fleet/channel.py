@@ -383,15 +383,19 @@ class Channel:
     def lose(self) -> None:
         """The other member does not answer: stop sending, and withdraw what need not be kept for its return."""
         self._stop()
-        kept = [each for each in self._kept if each.on_lost is not None]
-        if not kept:
+        if all(each.on_lost is None for each in self._kept):
             self._base += len(self._kept)
             self._kept.clear()
+        self._sent = self._tries = 0
+        self.withdraw()
+
+    def withdraw(self) -> None:
+        """Withdraw what need not be kept, and has not arrived as far as is known."""
         for each in self._kept:
             if each.on_lost is None:
                 each.payload = b""
-        self.backlog = sum(len(each.payload) for each in kept)
-        self._sent = self._flying = self._tries = 0
+        sizes = [len(each.payload) for each in self._kept]
+        self.backlog, self._flying = sum(sizes), sum(sizes[: self._sent])
 
     def find(self) -> None:
         """The other member answers again: send everything that is kept."""

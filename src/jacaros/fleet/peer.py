@@ -269,8 +269,11 @@ class Peer:
             return
         known, self._its_epoch = self._its_epoch, said.epoch
         if known != said.epoch:
-            self._break()  # it lost this member, even if that has not noticed, and what was begun on both sides
-            if said.knows == self._epoch:
+            # It lost this member, even if that has not noticed, and what was begun on both sides.
+            if known:
+                self.channel.withdraw()  # no operation of before begins after its caller has given it up
+            self._break()
+            if known or said.knows == self._epoch:
                 self._introduce()
         self._is_known = True
         self._agents.came(self.name, self)
