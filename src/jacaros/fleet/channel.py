@@ -30,6 +30,10 @@ _AHEAD = 4096
 """Payloads that are kept while an earlier one is missing."""
 _PAUSE = 1e-4
 """Seconds after a packet until which payloads go together at the end of the turn of the loop; later, at once."""
+_STREAM = 16
+"""Unacknowledged payloads from which on others go together, as they do when a property changes all the time."""
+_TOGETHER = 0.001
+"""Seconds after which these go."""
 _ACK_DELAY = 0.01
 """Seconds for which an acknowledgement waits for a packet to travel with."""
 _ACK_EVERY = 32
@@ -228,12 +232,15 @@ class Channel:
         self._kept.append(_Kept(payload, now, on_lost))
         self.backlog += len(payload)
         if self._open and not self._flushing:
-            if now - self._flushed_at >= _PAUSE:
-                self._flushed_at = now
-                self._flush()
-            else:
+            if self._sent >= _STREAM:
+                self._flushing = True
+                self._clock.call_later(_TOGETHER, self._flush_rest)
+            elif now - self._flushed_at < _PAUSE:
                 self._flushing = True
                 asyncio.get_running_loop().call_soon(self._flush_rest)
+            else:
+                self._flushed_at = now
+                self._flush()
 
     def _flush_rest(self) -> None:
         self._flushing = False
