@@ -84,6 +84,7 @@ def apart(tmp_path: Path) -> Iterator[tuple[Member, Member, Proxy]]:
 def test_a_link_that_is_cut_for_ten_seconds(apart: tuple[Member, Member, Proxy]) -> None:
     a, b, proxy = apart
     a.order("focus", "b")
+    a.until("focused", True)
     for one, other in ((a, b), (b, a)):
         _talk(of=one, to=other, messages=1500, each_second=100)
     until(lambda: len(b.events("received")) > 50, 10, "messages arrive")
@@ -160,6 +161,7 @@ def test_a_flood_arrives_once_and_in_order(pair: tuple[Member, Member]) -> None:
 def test_a_slow_receiver(pair: tuple[Member, Member]) -> None:
     a, b = pair
     b.order("focus", "a")
+    b.until("focused", True)
     b.until("focused", True)
     b.order("slow", 0.01)
     a.order("spin", 1000, 10_000)
