@@ -1,6 +1,7 @@
 """What a member with valid keys cannot do to another one, whatever it says."""
 
 import asyncio
+import sys
 from collections.abc import Awaitable, Callable
 from math import inf, nan
 from typing import Any
@@ -235,3 +236,16 @@ async def test_nothing_that_a_visitor_says_disturbs(pair: Pair) -> None:
     good.received(visitor, b"JF%c%b" % (VERSION, packet))
     await pair.say(message("tell", [0, "done"]))
     assert set(good.peers) == {"evil"}
+
+
+@trespass
+async def test_no_module_is_imported_for_another_member(pair: Pair) -> None:
+    zen = "this.Zen"
+    ended = await pair.request(lambda call: protocol.Create(call, "/main", "zen", zen, [2], None))
+    assert (ended.ok, ended.message) == (
+        False,
+        "cannot create a this.Zen: this system does not use this itself",
+    )
+    assert not (await pair.execute("workspace", "makeArtifact", [2, "zen", zen])).ok
+    assert not (await pair.execute("manrepo", "consultManual", [2, zen])).ok
+    assert "this" not in sys.modules

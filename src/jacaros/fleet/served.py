@@ -1,11 +1,13 @@
 """Workspaces of this member for another one: its operations, focuses and artifacts here."""
 
+import sys
 from collections.abc import Callable
 from functools import partial
+from importlib.util import find_spec
 from typing import Protocol
 
 from jacaros.artifacts.env.environment import Environment
-from jacaros.artifacts.env.errors import ArtifactId, UnknownWorkspace
+from jacaros.artifacts.env.errors import ArtifactId, OperationFailed, UnknownWorkspace
 from jacaros.artifacts.env.operation import SUCCEEDED, OperationOutcome, OperationRequest
 from jacaros.artifacts.env.ports import OnOutcome, UnderWay, Workspace
 from jacaros.artifacts.env.property import ObservableProperty, Observation
@@ -16,6 +18,8 @@ from jacaros.fleet.causes import Causes
 from jacaros.fleet.wire import ATOM, LIST, NotSendable, Wire
 from jacaros.runtime.trace import Cause
 
+_TYPES = {"makeArtifact": 1, "getManualContent": 0, "consultManual": 0}
+"""Operations of standard artifacts that find a type: which argument names it."""
 _SIGNALS = 1000
 """Signals of one observer that are kept meanwhile."""
 
@@ -160,6 +164,9 @@ class Served:
             return
         outs: list[Out] = []
         arguments = tuple(self._wire.to_value(asked.arguments, outs))
+        place = _TYPES.get(asked.operation, len(arguments))
+        for type_name in arguments[place : place + 1]:
+            _check_imports(str(type_name))
         self._begun.add(asked.call)
 
         def done(outcome: OperationOutcome) -> None:
@@ -204,6 +211,7 @@ class Served:
         workspace = environment.workspace(asked.workspace)
         if workspace not in environment.own():
             raise _not_own(asked.workspace)  # members do not use the rights that this one has at others
+        _check_imports(asked.type_name)
         arguments, creator = self._wire.to_value(asked.arguments), self._caller(asked.creator)
         self._begun.add(asked.call)
         self._keep(asked.call, workspace.create(asked.name, asked.type_name, arguments, creator, made))
@@ -294,6 +302,17 @@ class Served:
             call.pause()
         elif asked.what == "resume":
             call.resume()
+
+
+def _check_imports(type_name: str) -> None:
+    """Check that no installed module is imported to find a type: another member would choose which code runs here."""
+    module = type_name.rpartition(".")[0]
+    top = module.partition(".")[0]
+    if top not in ("", "jacaros") and module not in sys.modules and find_spec(top) is not None:
+        reason = Structure("makeArtifactFailure", ("unknown_artifact_template", type_name))
+        raise OperationFailed(
+            f"cannot create a {type_name}: this system does not use {module} itself", reason
+        )
 
 
 def _not_own(path: str) -> UnknownWorkspace:
