@@ -229,9 +229,7 @@ class Peer:
         self._served.lost()
         self._remote.lose()
         self._calls.lost()
-        self._agents.went(self.name)
-        for agent, service in list(self._services):
-            self._on_service(protocol.ServiceNews(agent, service, False))
+        self._drop_names()
         asked, self._asked = self._asked, {}
         self._failed = dict.fromkeys([*self._failed, *asked][-_QUESTIONS:], True)
         for message in asked.values():
@@ -264,6 +262,12 @@ class Peer:
 
     # ---- what it has
 
+    def _drop_names(self) -> None:
+        """Forget its agents and their services."""
+        self._agents.went(self.name)
+        for agent, service in list(self._services):
+            self._on_service(protocol.ServiceNews(agent, service, False))
+
     def _on_here(self, said: protocol.Here) -> None:
         if not self.is_there:
             return
@@ -275,6 +279,7 @@ class Peer:
             self._break()
             if known or said.knows == self._epoch:
                 self._introduce()
+        self._drop_names()  # changes since an earlier picture may have been withdrawn
         self._is_known = True
         self._agents.came(self.name, self)
         for name in said.agents:
