@@ -406,3 +406,20 @@ async def test_what_is_too_large_fails_and_delays_nothing(two) -> None:
         two.here.send("bob@there", "tell", Structure("picture", (large,)))
     two.here.send("bob@there", "tell", "small")
     await bob.until("small", timeout=5)
+
+
+@on_both()
+async def test_a_remote_workspace_gives_way_to_one_of_its_path(two) -> None:
+    await two.shared()
+    bob = two.there.add_agent(
+        "bob",
+        """
+        +!go <- createWorkspace("/main/lab"); joinWorkspace("/main/lab", Lab); getCurrentArtifacts(Own); .print(Own).
+        +!far <- joinWorkspace("/main/lab@here", _); lookupArtifact("counter", Id); focus(Id); inc[artifact_id(Id)].
+        """,
+    )
+    await bob.achieve("go").wait(timeout=9)
+    await two.settled(lambda: "/main/lab@here" in [each.path for each in two.there.environment.workspaces()])
+    await bob.achieve("far").wait(timeout=9)
+    assert await bob.until("count(X) & X > 1", timeout=9) == {"X": 2}
+    assert not any("counter" in line for line in two.lines)

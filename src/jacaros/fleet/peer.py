@@ -18,8 +18,9 @@ from jacaros.fleet.artifacts import ArtifactNames
 from jacaros.fleet.carrier import MemberId
 from jacaros.fleet.causes import Causes
 from jacaros.fleet.channel import Channel, Packet
+from jacaros.fleet.mounted import MountedWorkspaces
 from jacaros.fleet.names import one_line
-from jacaros.fleet.remote import Calls, RemoteWorkspace, RemoteWorkspaces
+from jacaros.fleet.remote import Calls, RemoteWorkspaces
 from jacaros.fleet.rights import OPERATE, SEE, SEND, STOP, TELL_HOW
 from jacaros.fleet.served import Served
 from jacaros.fleet.wire import NotSendable, Wire
@@ -98,7 +99,12 @@ class Peer:
         )
         self.channel.when_drained = self._served.drained
         self._remote = RemoteWorkspaces(id.incarnation, names, wire, self, self._calls, causes)
-        self._workspaces: dict[str, tuple[RemoteWorkspace, Callable[[], None]]] = {}
+        self._workspaces = MountedWorkspaces(
+            self.name,
+            self._remote,
+            lambda: self._environment() if system.has_environment else None,
+            self.report,
+        )
         self._handlers: dict[type, Callable[[Any], None]] = {
             protocol.Here: self._on_here,
             protocol.Watched: self._on_watched,
@@ -238,8 +244,8 @@ class Peer:
     def forget(self) -> None:
         """It will not return."""
         self.channel.give_up()
-        for path in list(self._workspaces):
-            self._on_workspace(protocol.WorkspaceNews(path, False))
+        for path in self._workspaces:
+            self._workspaces.remove(path)
         self._names.forget_run(self.id.incarnation)
         self._failed.clear()
         self._agents.forget(self.name)
@@ -286,14 +292,9 @@ class Peer:
             self._agents.know(name, self.name, True)
         for agent, service in said.services:
             self._on_service(protocol.ServiceNews(agent, service, True))
-        present = {path for path, _ in said.workspaces}
-        for path in [each for each in self._workspaces if each not in present]:
-            self._on_workspace(protocol.WorkspaceNews(path, False))
-        self._remote.find()  # first: agents focus artifacts of new workspaces themselves
-        for path, artifacts in said.workspaces:
-            self._on_workspace(protocol.WorkspaceNews(path, True))
-            if path in self._workspaces:
-                self._workspaces[path][0].told_all(artifacts)
+        self._workspaces.keep_only([path for path, _ in said.workspaces])
+        self._remote.find()  # before new ones, whose artifacts agents focus themselves
+        self._workspaces.told_all(said.workspaces)
         self.picture = said
         self._become("joined")
 
@@ -334,35 +335,13 @@ class Peer:
 
     def path_of(self, path: str) -> str:
         """Return the path at which a workspace of it is visible here."""
-        known = self._workspaces.get(path)
-        return known[0].path if known is not None else f"{path}@{self.name}"
+        return self._workspaces.path_of(path)
 
     def _on_workspace(self, said: protocol.WorkspaceNews) -> None:
-        known = self._workspaces.get(said.path)
-        if known is None and said.present and self._system.has_environment:
-            self._mount(said.path)
-        elif known is not None and not said.present:
-            del self._workspaces[said.path]
-            remote, unmount = known
-            remote.remove_all()
-            unmount()
-
-    def _mount(self, path: str) -> None:
-        environment = self._environment()
-        seen_as = path
-        is_taken = any(each.path == path for each in environment.workspaces())
-        if is_taken or "@" in path:  # it may be that of another member, which is not there yet
-            seen_as = f"{path}@{self.name}"
-            if is_taken and path != "/main":
-                self.report(f"its workspace {path} is {seen_as} here, where {path} exists already")
-        remote = RemoteWorkspace(seen_as, path, self.name, self._remote)
-        # Before it is mounted, so that its artifacts get its path.
-        self._workspaces[path] = remote, lambda: None
-        try:
-            self._workspaces[path] = remote, environment.mount(remote)
-        except OperationFailed:
-            del self._workspaces[path]
-            raise
+        if said.present:
+            self._workspaces.add(said.path)
+        else:
+            self._workspaces.remove(said.path)
 
     async def create_workspace(self, path: str) -> None:
         """Create a workspace there.
@@ -382,8 +361,7 @@ class Peer:
             raise outcome.failure
 
     def _on_artifact(self, said: protocol.ArtifactNews) -> None:
-        if said.workspace in self._workspaces:
-            self._workspaces[said.workspace][0].told(said.number, said.data)
+        self._workspaces.told(said.workspace, said.number, said.data)
 
     # ---- messages
 

@@ -381,6 +381,13 @@ class RemoteWorkspace(ports.Workspace):
         if is_new:
             self._tell(found, True)
 
+    def data(self) -> list[protocol.ArtifactData]:
+        """Return what is known of all artifacts, as its member said it."""
+        return [
+            (self._all.names.number(each), each.name, each.type_name, each.creator, list(offers))
+            for each, offers in self._offers.items()
+        ]
+
     def told_all(self, artifacts: Sequence[protocol.ArtifactData]) -> None:
         """Hear of all artifacts."""
         numbers = {data[0] for data in artifacts}

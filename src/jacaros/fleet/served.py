@@ -45,6 +45,7 @@ class _Watching:
         self.agent = agent
         self.artifact = artifact
         self._served, self._number = served, number
+        self.is_replaced = False
         self._whole = True
         self._properties: dict[int, ObservableProperty] = {}
         self._removed: dict[int, None] = {}
@@ -53,6 +54,8 @@ class _Watching:
 
     def observe(self, observation: Observation) -> None:
         """Take in what was published, and send it. On a slow link it waits: only the newest values go then."""
+        if self.is_replaced:
+            return  # its observer has a new focus, and would take the end of this one for that of the properties
         self._cause = observation.cause
         for new in (*(after for _, after in observation.changed), *observation.added):
             self._properties[new.key] = new
@@ -255,6 +258,7 @@ class Served:
             key = (asked.observer, asked.artifact)
             workspace = self._workspace_of(artifact)
             if (former := self._watching.pop(key, None)) is not None:
+                former.is_replaced = True
                 workspace.stop_focus(artifact, former)
                 self.late.pop(former, None)
             watching = _Watching(self, asked.observer, self._called(asked.agent), artifact)

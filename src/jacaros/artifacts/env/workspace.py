@@ -322,6 +322,7 @@ class WorkspaceTree:
         self.create_elsewhere: Callable[[str, str], Awaitable[None]] | None = None
         self._workspaces: dict[str, ports.Workspace] = {}
         self._links: dict[str, str] = {}
+        self._yielding: dict[str, Callable[[], None]] = {}
         self._watchers: dict[str, list[Callable[[], None]]] = {}
 
     def workspaces(self) -> tuple[ports.Workspace, ...]:
@@ -371,14 +372,20 @@ class WorkspaceTree:
             OperationFailed: it already exists; reason ``workspace_already_present(Path)``.
             UnknownWorkspace: the parent workspace does not exist.
         """
-        path = self._free(path)
+        path = self._free(path, own=True)
         above = path.rpartition("/")[0]
         workspace = self._workspaces[path] = self._make(path, self.workspace(above) if above else None)
         self._tell(path)
         return workspace
 
-    def mount(self, workspace: ports.Workspace) -> Callable[[], None]:
+    def mount(
+        self, workspace: ports.Workspace, give_way: Callable[[], None] | None = None
+    ) -> Callable[[], None]:
         """Add a remote workspace at its path. Return a function that removes it.
+
+        Args:
+            workspace: the workspace.
+            give_way: removes it when one of this process is created at its path. None: that fails.
 
         Raises:
             OperationFailed: the path is in use; reason ``workspace_already_present(Path)``.
@@ -386,11 +393,14 @@ class WorkspaceTree:
         """
         path = self._free(workspace.path)
         self._workspaces[path] = workspace
+        if give_way is not None:
+            self._yielding[path] = give_way
         self._tell(path)
 
         def unmount() -> None:
             if self._workspaces.get(path) is workspace:
                 del self._workspaces[path]
+                self._yielding.pop(path, None)
                 self._tell(path)
 
         return unmount
@@ -403,14 +413,16 @@ class WorkspaceTree:
             UnknownWorkspace: the target, or the parent workspace of the path, does not exist.
         """
         to = self.workspace(target)
-        path = self._free(path)
+        path = self._free(path, own=True)
         self._links[path] = to.path
         self._tell(path)
 
-    def _free(self, path: str) -> str:
-        """Return an unused path, with its links resolved."""
+    def _free(self, path: str, own: bool = False) -> str:
+        """Return an unused path, with its links resolved. Remote workspaces give way to an *own* one."""
         above, _, name = str.__str__(path).rpartition("/")
         path = f"{self.workspace(above).path}/{name}" if above else path
+        if own and path in self._yielding:
+            self._yielding[path]()
         if not name or path in self._workspaces or path in self._links:
             reason = Structure("workspace_already_present", (str.__str__(path),))
             raise OperationFailed(f"workspace `{path}` already exists", reason)
