@@ -41,7 +41,7 @@ class Process:
         assert self.popen.stdin is not None
         self.popen.stdin.close()
         try:
-            self.popen.wait(10)
+            self.popen.wait(30)
         except subprocess.TimeoutExpired:
             self.kill()
             raise
