@@ -11,7 +11,7 @@ Fast DDS, if ``tools/install_ros2.sh`` was run), by turns in one run. Processes 
 * ``operations``: an operation of an artifact in the other process; a query; a call of a service.
 * ``updates``: of an observable property, each with a plan that runs; publications; topics. One way, as fast as possible.
 
-``growth`` starts up to 50 systems with ten agents each, and measures memory, the time until each knows all agents, and the
+``growth`` starts up to 32 systems (50 need more than two cores) with ten agents each, and measures memory, the time until each knows all agents, and the
 traffic of each, idle and while each agent sends a message a second.
 
 ``inside`` measures messages inside one process with the code in FOLDER, a clone of an earlier version, and with this one,
@@ -41,7 +41,7 @@ AMOUNTS = {"messages": 250, "operations": 250, "updates": 1.0}
 """Messages, operations, or seconds, of each turn."""
 GROWTH, INSIDE = "growth", "inside"
 KNOWN = (*AMOUNTS, GROWTH, INSIDE)
-SIZES = (2, 4, 8, 16, 32, 50)
+SIZES = (2, 4, 8, 16, 32)
 AGENTS = 10
 """Of each system, as in members/crowd.py."""
 WINDOW = 4.0
