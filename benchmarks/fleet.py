@@ -11,8 +11,8 @@ Fast DDS, if ``tools/install_ros2.sh`` was run), by turns in one run. Processes 
 * ``operations``: an operation of an artifact in the other process; a query; a call of a service.
 * ``updates``: of an observable property, each with a plan that runs; publications; topics. One way, as fast as possible.
 
-``growth`` starts up to 32 systems (50 need more than two cores) with ten agents each, and measures memory, the time until each knows all agents, and the
-traffic of each, idle and while each agent sends a message a second.
+``growth`` starts up to 32 systems with ten agents each, and measures memory, the time until each knows all agents, and the
+traffic of each, idle and while each agent sends a message a second. 50 systems need more than two cores.
 
 ``inside`` measures messages inside one process with the code in FOLDER, a clone of an earlier version, and with this one,
 by turns.
