@@ -183,7 +183,7 @@ class RemoteWorkspaces:
             old = known.get(key)
             if old is None:
                 added.append(new)
-            else:
+            elif not seen.whole or old != new:  # a renewed focus repeats what is known
                 changed.append((old, new))
             known[key] = new
         if signals or removed or changed or added:
