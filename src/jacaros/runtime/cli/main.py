@@ -45,7 +45,7 @@ COMMANDS = {
     "sim": ("jacaros.runtime.cli.sim", "Run a robot world as a separate ROS node."),
     "world": ("jacaros.runtime.cli.world", "Show and export world files."),
     "guard": ("jacaros.runtime.cli.guard", "Stop the robot when its agents no longer can."),
-    "fleet": ("jacaros.runtime.cli.fleet", "Set up a fleet of systems on several computers."),
+    "fleet": ("jacaros.runtime.cli.fleet", "Look at a fleet of systems, and set it up."),
     "ros": ("jacaros.runtime.cli.ros", "Inspect a live ROS graph, and write mapping files for it."),
     "describe": ("jacaros.runtime.cli.describe", "Describe an artifact type, a mapping file or a project."),
     "version": ("jacaros.runtime.cli.main:version", "Print the versions of jacaros and its dependencies."),
