@@ -1,4 +1,4 @@
-"""What a process is told to measure, as lines on its standard input, and its answers on its standard output."""
+"""What a process measures, as lines on its standard input, and its answers on its standard output."""
 
 import json
 import sys

@@ -1,4 +1,4 @@
-"""Processes that measure what they are told."""
+"""Processes that measure what their orders say."""
 
 import contextlib
 import json

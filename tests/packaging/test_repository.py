@@ -37,6 +37,7 @@ FOREIGN = tuple(
 HOSTS = {
     "127.0.0.1",
     "localhost",
+    "zenoh.io",
     "github.com",  # the repository itself, see REPOSITORY
     "json-schema.org",  # the name of its dialect
     "json.schemastore.org",  # the name of its schema
