@@ -320,12 +320,19 @@ class Channel:
         if packet.first == before and not self._ahead:  # as nearly always
             self._deliver_all(packet.payloads)
         else:
-            for number, payload in enumerate(packet.payloads, packet.first):
-                if self._expected <= number < self._expected + _AHEAD:
-                    self._ahead[number] = payload
+            self._put_ahead(packet)
             self._deliver()
         if packet.payloads:
             self._owe(self._expected - before)
+
+    def _put_ahead(self, packet: Packet) -> None:
+        """Keep what came out of order, as far as there is room: the rest comes again."""
+        room = 2 * _WINDOW - sum(map(len, self._ahead.values()))
+        for number, payload in enumerate(packet.payloads, packet.first):
+            is_next = number == self._expected
+            if is_next or (self._expected < number < self._expected + _AHEAD and len(payload) <= room):
+                self._ahead[number] = payload
+                room -= len(payload)
 
     def _skip_to(self, base: int) -> None:
         """Forget numbers that the other side has given up, even those that came out of order."""

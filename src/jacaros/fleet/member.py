@@ -23,7 +23,7 @@ from jacaros.fleet.rights import Rights
 from jacaros.fleet.visits import Visits, is_visitor
 from jacaros.look.records.records import MemberRecord
 from jacaros.runtime.errors import UsageError
-from jacaros.runtime.files.texts import aside
+from jacaros.runtime.files.texts import aside, help_line
 from jacaros.runtime.mas.directory import NAME as DIRECTORY_NAME
 from jacaros.runtime.mas.system import System
 from jacaros.runtime.timers import Timer
@@ -117,9 +117,8 @@ class Member:
         self._pulse_at = self._system.clock.elapsed
         if not await self._is_alone():
             await self.leave()
-            raise UsageError(
-                f"the fleet has a member called {self.me.name} already; choose another name with --member"
-            )
+            help = help_line("choose another name with --member")
+            raise UsageError(f"the fleet has a member called {self.me.name} already\n{help}")
         self._system.fleet = self
         self._pulse()
 
@@ -292,7 +291,7 @@ class Member:
         if member.name == self.me.name:
             self._meet_rival(member)
             return None
-        if member in self._departed or len(self.peers) >= _MOST:
+        if member in self._departed or (known is None and not self._has_room()):
             return None
         if known is not None:
             if known.is_there:
@@ -303,6 +302,18 @@ class Member:
             self._former.pop(member) if member in self._former else self._new_peer(member)
         )
         return peer
+
+    def _has_room(self) -> bool:
+        """Make room for a new member, in place of one that was lost. Return False if all are there."""
+        if len(self.peers) < _MOST:
+            return True
+        lost = next((each for each in self.peers.values() if not each.is_there), None)
+        if lost is None:
+            self._warn(f"ignored further members: there are {_MOST} already")
+            return False
+        del self.peers[lost.name]
+        self._replace(lost)
+        return True
 
     def _replace(self, lost: Peer) -> None:
         """Make room for another run of a lost member."""

@@ -5,6 +5,7 @@ from types import MappingProxyType
 
 from jacaros.fleet.names import OPERATOR
 from jacaros.runtime.errors import UsageError
+from jacaros.runtime.files.texts import help_line
 
 SEND, SEE, OPERATE, TELL_HOW, STOP = "send", "see", "operate", "tell_how", "stop"
 RIGHTS = (SEND, SEE, OPERATE, TELL_HOW, STOP)
@@ -43,6 +44,6 @@ def read_rights(written: Sequence[str]) -> Rights:
         unknown = sorted(rights.difference(RIGHTS))
         if not member or not equals or unknown:
             why = f"unknown right `{unknown[0]}`" if unknown else f"expected MEMBER=RIGHT,..., found `{text}`"
-            raise UsageError(f"invalid --fleet-allow: {why}; rights are {', '.join(RIGHTS)}")
+            raise UsageError(f"invalid --fleet-allow: {why}\n{help_line('rights are ' + ', '.join(RIGHTS))}")
         found[member] = rights
     return Rights(found)
