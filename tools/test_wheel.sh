@@ -75,10 +75,14 @@ missing() {
   if grep -q Traceback missing.log; then cat missing.log; fail "$* shows a traceback"; fi
 }
 missing rosbridge "$jacaros" run hello.asl --ros rosbridge --for 1
+missing fleet "$jacaros" run hello.asl --fleet lab
+missing fleet "$jacaros" fleet list lab
 
-install "$wheel[behaviour-trees,maps,rosbridge]"
+install "$wheel[behaviour-trees,fleet,maps,rosbridge]"
 "$jacaros" world show house --output house.svg
 "$jacaros" run examples/07_shared_robot/shared_robot.jcm --clock fast --ground-truth truth.jsonl >shared_robot.log
 "$scratch/venv/bin/python" examples/07_shared_robot/check.py truth.jsonl | grep -q '^passed$'
+printf 'MAS two {\n  agents: hello at "left"; hello2 hello at "right";\n}\n' >two.mas2j
+test "$("$jacaros" run two.mas2j --all-nodes --for 5 2>/dev/null | sort | head -1)" = "[left] [hello] hello"
 PYTHON=$python "$root/tools/make_sbom.sh" "$dist"
 echo "the wheel works: hello, shared robot, patrol ($(wc -l <patrol.log) lines), replay ($(wc -c <patrol.html) bytes)"

@@ -275,7 +275,8 @@ class Member:
             known = self.peers.get(member.name)
             if known is not None and known.id == member:
                 known.is_absent = True
-                known.lose()
+                # One that leaves at the same time has no member left to say so to.
+                known.lose("lost" if self._ends else "left")
             return
         peer = self._peer(member)
         if peer is not None:
