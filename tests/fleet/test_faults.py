@@ -20,7 +20,7 @@ from jacaros.fleet.carrier import MemberId
 from jacaros.fleet.channel import VERSION, Channel, Malformed, read_packet
 from jacaros.fleet.joining import joining
 from jacaros.fleet.member import Member, new_id
-from jacaros.fleet.peer import FULL
+from jacaros.fleet.messages import FULL
 from jacaros.runtime.clock import clock_of
 
 BOUND = 0.6

@@ -136,7 +136,7 @@ async def asked(pair: Pair, goal: str) -> str:
     await pair.good.sleep(1)
     ann.achieve("ask")
     await pair.good.sleep(1)
-    return next(iter(pair.members["good"].peers["evil"]._asked))
+    return next(iter(pair.members["good"].peers["evil"].messages.asked))
 
 
 _PLAN = "+!lesson <- .print(taught)."

@@ -5,9 +5,6 @@ from collections.abc import Callable, Collection
 from functools import partial
 from typing import Any
 
-from jacaros.agents.mind.state.act import SpeechAct
-from jacaros.agents.mind.state.plan import Failure
-from jacaros.agents.terms.values import String, atom, functor
 from jacaros.artifacts.env.environment import Environment
 from jacaros.artifacts.env.errors import OperationFailed
 from jacaros.artifacts.env.operation import OperationOutcome
@@ -18,29 +15,21 @@ from jacaros.fleet.artifacts import ArtifactNames
 from jacaros.fleet.carrier import MemberId
 from jacaros.fleet.causes import Causes
 from jacaros.fleet.channel import Channel, Packet
+from jacaros.fleet.messages import Messages
 from jacaros.fleet.mounted import MountedWorkspaces
 from jacaros.fleet.names import one_line
 from jacaros.fleet.remote import Calls, RemoteWorkspaces
-from jacaros.fleet.rights import OPERATE, SEE, SEND, STOP, TELL_HOW
+from jacaros.fleet.rights import OPERATE, SEE, STOP
 from jacaros.fleet.served import Served
-from jacaros.fleet.wire import NotSendable, Wire
+from jacaros.fleet.wire import Wire
 from jacaros.look.records.records import MemberRecord
 from jacaros.runtime.errors import InternalError
 from jacaros.runtime.mas.system import System
 
-FULL = 8 << 20
-"""Bytes under way to a member beyond which no message is accepted for it."""
 _REPORTS = 100
 """Different warnings about a member that are written at most."""
-_QUESTIONS = 10_000
-"""Questions to a member whose answers are awaited, or must be ignored; older ones get no report of its loss."""
-_ERROR, _ERROR_MSG = functor("error", 1), functor("error_msg", 1)
-_HOW = frozenset({"tellHow", "tell-how", "untellHow", "untell-how"})
-"""Performatives that change the program of their receiver."""
 _SHUTDOWN = "shutdownNode"
 """The operation of CArtAgO that ends the run."""
-_ASKING = "ask"
-_ASKING_HOW = ("askHow", "ask-how")
 
 
 class Peer:
@@ -63,6 +52,7 @@ class Peer:
         heard_at: when it was last heard, on the clock of the run.
         picture: what it said of itself last; None before.
         state: ``joined``, ``lost`` or ``left``; empty before it has joined.
+        messages: messages in both directions.
     """
 
     def __init__(
@@ -89,10 +79,9 @@ class Peer:
         self.state = ""
         self._is_known = False
         self._reported: set[str] = set()
-        self._asked: dict[str, SpeechAct] = {}
-        self._failed: dict[str, bool] = {}
         self._services: dict[tuple[str, str], str] = {}
-        wire = self._wire = Wire(names.name, names.find)
+        wire = Wire(names.name, names.find)
+        self.messages = Messages(self.name, system, self.channel, self, agents, wire, causes, rights)
         self._calls = Calls(self, self.name)
         self._served = Served(
             self._environment, names, wire, self, lambda agent: agents.called(agent, self.name), causes
@@ -111,8 +100,8 @@ class Peer:
             protocol.Bye: lambda _: self.leave(),
             protocol.AgentNews: self._if_known(self._on_agent),
             protocol.ServiceNews: self._if_known(self._on_service),
-            protocol.Message: self._on_message,
-            protocol.Returned: self._on_returned,
+            protocol.Message: self.messages.received,
+            protocol.Returned: self.messages.returned,
             protocol.WorkspaceNews: self._if_known(self._on_workspace),
             protocol.ArtifactNews: self._if_known(self._on_artifact),
             protocol.Execute: self._on_execute,
@@ -236,10 +225,7 @@ class Peer:
         self._remote.lose()
         self._calls.lost()
         self._drop_names()
-        asked, self._asked = self._asked, {}
-        self._failed = dict.fromkeys([*self._failed, *asked][-_QUESTIONS:], True)
-        for message in asked.values():
-            self._system.mailboxes.returned(message, "member_lost")
+        self.messages.lost()
 
     def forget(self) -> None:
         """It will not return."""
@@ -247,7 +233,7 @@ class Peer:
         for path in self._workspaces:
             self._workspaces.remove(path)
         self._names.forget_run(self.id.incarnation)
-        self._failed.clear()
+        self.messages.forget()
         self._agents.forget(self.name)
         self._causes.want(self.name, False)
 
@@ -287,7 +273,7 @@ class Peer:
                 self._introduce()
         self._drop_names()  # changes since an earlier picture may have been withdrawn
         self._is_known = True
-        self._agents.came(self.name, self)
+        self._agents.came(self.name, self.messages)
         for name in said.agents:
             self._agents.know(name, self.name, True)
         for agent, service in said.services:
@@ -362,91 +348,3 @@ class Peer:
 
     def _on_artifact(self, said: protocol.ArtifactNews) -> None:
         self._workspaces.told(said.workspace, said.number, said.data)
-
-    # ---- messages
-
-    def post(self, message: SpeechAct, receiver: str) -> None:
-        """Send a message to an agent of it.
-
-        Raises:
-            Failure: too much is under way, or the content cannot be sent.
-        """
-        if self.backlog > FULL:
-            raise Failure((_ERROR, atom("mailbox_full")), (_ERROR_MSG, String(f"{self.name} is too slow")))
-        try:
-            content = self._wire.from_term(message.content)
-        except NotSendable as error:
-            raise Failure((_ERROR, atom("not_sendable")), (_ERROR_MSG, String(str(error)))) from None
-        said = protocol.Message(
-            message.performative,
-            message.sender,
-            receiver,
-            content,
-            message.id,
-            message.in_reply_to,
-            self._causes.of_step(message.sender),
-        )
-        payload = protocol.write(said)
-        if len(payload) > protocol.LARGEST:
-            raise Failure((_ERROR, atom("not_sendable")), (_ERROR_MSG, String(protocol.TOO_LARGE)))
-        if message.performative.startswith(_ASKING):
-            self._note_question(message)
-            self.channel.send(payload)
-        else:
-            self.channel.send(payload, partial(self._system.mailboxes.returned, message, "unconfirmed"))
-
-    def _note_question(self, message: SpeechAct) -> None:
-        self._asked[message.id] = message
-        if len(self._asked) > _QUESTIONS:
-            del self._asked[next(iter(self._asked))]
-
-    def _on_message(self, said: protocol.Message) -> None:
-        reason = "malformed"
-        try:
-            reason = self._deliver(said)
-        finally:
-            if reason:
-                returned = protocol.Returned(
-                    said.id, said.sender, said.receiver, said.performative, said.content, reason
-                )
-                # Kept if it is lost now: nothing else tells the sender.
-                self.channel.send(protocol.write(returned), lambda: None)
-
-    def _deliver(self, said: protocol.Message) -> str:
-        """Put a message into the mailbox of its receiver. Return why that is impossible, or an empty text."""
-        right = TELL_HOW if said.performative in _HOW and not self._is_answer_to_how(said) else SEND
-        if right not in self._rights:
-            self.report(f"refused a message: it lacks the right `{right}` (--fleet-allow)")
-            return "not_permitted"
-        if not (said.performative + said.sender).isprintable():
-            return "malformed"  # they get into logs
-        if said.in_reply_to is not None:
-            self._asked.pop(said.in_reply_to, None)
-            if self._failed.pop(said.in_reply_to, False):
-                return ""  # its asker knows that the member was lost, and would take it for news
-        sender, content = self._agents.called(said.sender, self.name), self._wire.to_term(said.content)
-        message = SpeechAct(said.performative, sender, said.receiver, content, said.id, said.in_reply_to)
-        if self._system.directory.find_here(said.receiver) is None:
-            return "receiver_not_found"  # even if another member has it: messages are not passed on
-        try:
-            return (
-                ""
-                if self._system.deliver(message, self._causes.arrived(said.cause))
-                else "receiver_not_found"
-            )
-        except Failure:
-            return "mailbox_full"
-
-    def _is_answer_to_how(self, said: protocol.Message) -> bool:
-        """Return whether it brings the plans that its receiver has asked for."""
-        asked = self._asked.get(said.in_reply_to or "")
-        return (
-            asked is not None and asked.performative in _ASKING_HOW and asked.sender == said.receiver
-        ) and not said.performative.startswith("un")
-
-    def _on_returned(self, said: protocol.Returned) -> None:
-        if self._asked.pop(said.id, None) is None and said.performative.startswith(_ASKING):
-            return  # the asker knows that the member was lost
-        receiver, content = self._agents.called(said.receiver, self.name), self._wire.to_term(said.content)
-        message = SpeechAct(said.performative, said.sender, receiver, content, said.id)
-        self._system.mailboxes.returned(message, said.reason)
