@@ -53,6 +53,8 @@ REAL_GRAPHS = {
 }
 """Suites that run on every real graph, those that take longest first."""
 
+PROCESSES = "tests/fleet/test_processes.py"
+"""Tests in which members of a fleet notice within seconds that others are killed, frozen or cut off."""
 WAITING = 3
 """Parts that mostly wait, and so run at the same time beside those that compute."""
 
@@ -140,7 +142,7 @@ def parts() -> list[Part]:
             (*PYTEST, "tests/integration", "tests/compatibility", "-m", "not ros1 and not ros2", *ONCE_MORE),
             budget=60,
         ),
-        Part("fleet", (*PYTEST, "tests/fleet", *ONCE_MORE), "waiting", budget=200),
+        Part("fleet", (*PYTEST, "tests/fleet", f"--ignore={PROCESSES}", *ONCE_MORE), "waiting", budget=240),
         Part("scenarios", (*PYTEST, "tests/scenarios", "-m", "not ros1 and not ros2"), budget=165),
         Part("experiment", (PYTHON, "experiment/run.py", "--quick"), budget=150, quiet_minutes=30),
         Part("faults", (*PYTEST, "tests/faults"), budget=10),
@@ -155,6 +157,7 @@ def parts() -> list[Part]:
             command = ("tools/test_python.sh", str(python))
             found.append(Part(f"python3.{minor}", command, needs="wheel", budget=200, repeats=True))
             found.append(Part(f"python3.{minor}-smoke", (*command, *SMOKE), needs="wheel", budget=25))
+    found.append(Part("fleet-processes", (*PYTEST, PROCESSES, *ONCE_MORE), "real-time", budget=80))
     found.append(Part("real-time", (PYTHON, "tools/check_conformance.py", "real-time"), "real-time"))
     for suite, folders in REAL_GRAPHS.items():
         for name in ("ros1", "ros2-jazzy", "ros2-kilted"):

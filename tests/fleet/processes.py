@@ -106,20 +106,20 @@ class Member(Process):
         """Return whether it has noted an event."""
         return any(event[2:] == list(data) for event in self.events(kind))
 
-    def until(self, kind: str, *data: object, seconds: float = 15.0, times: int = 1) -> None:
+    def until(self, kind: str, *data: object, seconds: float = 60.0, times: int = 1) -> None:
         """Wait until it has noted an event, perhaps more than once."""
         what = f"{self.name} notes {kind} {data}"
         until(lambda: sum(each[2:] == list(data) for each in self.events(kind)) >= times, seconds, what)
 
     def has_all_outcomes(self) -> None:
         """Wait until all its operations have ended."""
-        until(lambda: len(self.events("outcome")) >= len(self.events("operation")), 10, "all operations end")
+        until(lambda: len(self.events("outcome")) >= len(self.events("operation")), 30, "all operations end")
 
     def knows(self, *others: "Member") -> None:
         """Wait until it knows the artifacts of other members."""
         for other in others:
             self.until("member", other.name, "joined")
-            until(lambda other=other: other.events("began"), 15, f"{other.name} has begun")  # type: ignore[misc]
+            until(lambda other=other: other.events("began"), 60, f"{other.name} has begun")  # type: ignore[misc]
 
 
 def compare(sender: Member, receiver: Member) -> Counter[str]:
