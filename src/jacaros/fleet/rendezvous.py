@@ -8,6 +8,7 @@ before it looks, so of two members that start together at least one sees the oth
 import errno
 import secrets
 import socket
+import sys
 import time
 from contextlib import suppress
 from pathlib import Path
@@ -40,6 +41,8 @@ def rendezvous(fleet: str) -> tuple[Path, list[Path]]:
 
 def _is_live(path: Path) -> bool:
     """Return whether a member is or may be behind a socket; otherwise remove it."""
+    if sys.platform == "win32":
+        return False  # there is no private folder
     with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as probe:
         probe.settimeout(0.1)  # a frozen member may have no place left for connections
         if probe.connect_ex(str(path)) not in (errno.ECONNREFUSED, errno.ENOENT):
