@@ -49,6 +49,14 @@ RUNS: dict[str, list[list[str]]] = {
     "sim": [["sim", "w.yaml"], ["sim", EVIL]],
     "ros": [["ros", "list", "--world", "w.yaml"], ["ros", "show", EVIL], ["ros", "check", "m.yaml"]],
     "guard": [["guard", EVIL]],
+    "fleet": [
+        ["fleet", "list", EVIL],
+        ["fleet", "stop", "lab", EVIL],
+        ["fleet", "keys", "lab", EVIL, "--folder", "keys"],
+        ["fleet", "router", "lab", "--listen", EVIL],
+        ["run", "a.asl", "--fleet", "lab", "--member", EVIL],
+        ["run", "a.asl", "--fleet", "lab", "--fleet-allow", EVIL],
+    ],
     "demo": [["demo", EVIL]],
     "version": [["version", EVIL]],
 }
