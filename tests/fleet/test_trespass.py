@@ -202,6 +202,14 @@ async def test_no_member_uses_the_rights_of_another_one(pair: Pair) -> None:
     assert (await pair.request(lambda call: create("/main", call))).ok
     ended = await pair.request(lambda call: create("/main@evil", call))
     assert (ended.ok, ended.message) == (False, "workspace `/main@evil` is not of this system")
+    for operation, arguments in (
+        ("makeArtifact", [2, "/main@evil/mine", "Blackboard"]),
+        ("createWorkspace", [2, "/main/lab", "evil"]),
+        ("createWorkspace", [2, "/main@evil/lab"]),
+    ):
+        ended = await pair.execute("workspace", operation, arguments)
+        assert (ended.ok, "is not of this system" in (ended.message or "")) == (False, True), operation
+    assert (await pair.execute("workspace", "createWorkspace", [2, "lab"])).ok
 
 
 @trespass

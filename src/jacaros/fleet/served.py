@@ -1,13 +1,13 @@
 """Workspaces of this member for another one: its operations, focuses and artifacts here."""
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from importlib.util import find_spec
 from typing import Protocol
 
-from jacaros.artifacts.env.environment import Environment
-from jacaros.artifacts.env.errors import ArtifactId, OperationFailed, UnknownWorkspace
+from jacaros.artifacts.env.environment import Environment, WorkspaceArtifact
+from jacaros.artifacts.env.errors import ArtifactId, OperationFailed, UnknownWorkspace, resolve_path
 from jacaros.artifacts.env.operation import SUCCEEDED, OperationOutcome, OperationRequest
 from jacaros.artifacts.env.ports import OnOutcome, UnderWay, Workspace
 from jacaros.artifacts.env.property import ObservableProperty, Observation
@@ -170,6 +170,8 @@ class Served:
         place = _TYPES.get(asked.operation, len(arguments))
         for type_name in arguments[place : place + 1]:
             _check_imports(str(type_name))
+        if artifact.type_name == WorkspaceArtifact.__name__:
+            self._check_places(artifact.workspace, asked.operation, arguments)
         self._begun.add(asked.call)
 
         def done(outcome: OperationOutcome) -> None:
@@ -180,6 +182,20 @@ class Served:
         request.timeout, request.urgency = asked.timeout, asked.urgency
         request.policy, request.yields = asked.policy, asked.yields  # type: ignore[assignment]
         self._keep(asked.call, self._environment().execute(request))
+
+    def _check_places(self, here: str, operation: str, arguments: Sequence[object]) -> None:
+        """Let no member change something at a third one with the rights of this one.
+
+        Raises:
+            UnknownWorkspace: it would, through the artifact ``workspace``.
+        """
+        places = [each.workspace for each in arguments if isinstance(each, ArtifactId)]
+        if operation in ("makeArtifact", "createWorkspace"):
+            places.append(resolve_path(here, str(arguments[0])).rpartition("/")[0] or here)
+        own = {each.path for each in self._environment().own()}
+        for place in places:
+            if place not in own or (operation, len(arguments)) == ("createWorkspace", 2):
+                raise _not_own(place)
 
     def _caller(self, agent: str | None) -> str | None:
         return None if agent is None else self._called(agent)
