@@ -99,7 +99,7 @@ class Member(Process):
 
     def events(self, kind: str) -> list[list[Any]]:
         """Return what it has noted of a kind: time, kind, data."""
-        lines = self.path.read_text(encoding="utf-8").splitlines()
+        lines = self.path.read_text(encoding="utf-8").split("\n")[:-1]  # the last one may be half written
         return [event for event in map(json.loads, lines) if event[1] == kind]
 
     def has(self, kind: str, *data: object) -> bool:

@@ -11,6 +11,7 @@ from players import Member, Player
 from ports import free_port
 
 from jacaros.fleet.network import Network, NoRouter, open_session, session_config
+from jacaros.fleet.rendezvous import rendezvous
 from jacaros.runtime.errors import UsageError
 
 JOINED, KILLED, FROZEN = 1.0, 1.0, 3.0
@@ -88,6 +89,12 @@ def test_nothing_listens_on_any_interface(fleet: str, stack: ExitStack) -> None:
     assert listening(member.process.pid) == []
 
 
+def test_a_member_is_found_while_its_socket_is_being_made(fleet: str) -> None:
+    own, _ = rendezvous(fleet)
+    own.unlink(missing_ok=True)  # as Zenoh does before it listens
+    assert own in rendezvous(fleet)[1]
+
+
 def test_fleets_do_not_see_each_other(fleet: str, stack: ExitStack) -> None:
     one = stack.enter_context(Member(fleet, "one")).joined()
     other = stack.enter_context(Member(f"{fleet}-b", "other")).joined()
@@ -102,13 +109,14 @@ def test_the_sockets_of_dead_members_are_removed(fleet: str, stack: ExitStack) -
     dead = stack.enter_context(Member(fleet, "dead")).joined()
     endpoint = session_config(Network(fleet, "member")).get_json("listen/endpoints")
     folder = Path(endpoint[endpoint.index("/") :].partition('"')[0]).parent
-    sockets = set(folder.glob("*.sock"))
+    files = {*folder.glob("*.sock"), *folder.glob("*.member")}
+    assert any(each.suffix == ".sock" for each in files)
     dead.kill()
     dead.process.wait()
-    for each in sockets:
+    for each in files:
         os.utime(each, (1, 1))
     session_config(Network(fleet, "member"))
-    assert not sockets & set(folder.iterdir())
+    assert not files & set(folder.iterdir())
 
 
 def test_a_message_that_is_too_large_is_dropped_and_the_next_one_arrives(

@@ -1,8 +1,9 @@
 """How the members of one fleet on one computer find each other without a server: by their sockets in a folder.
 
 The folder is private, so members of other users neither see nor reach them, and it needs no network interface at all. A
-new member connects to all sockets in the folder; it keeps trying while one is frozen. Its own name is in the folder
-before it looks, so of two members that start together at least one sees the other. Nothing depends on any one member.
+new member connects to all sockets in the folder; it keeps trying while one is frozen. A file beside its own socket is in
+the folder before it looks, so of two members that start together at least one sees the other. (Zenoh replaces the file of
+the socket itself.) Nothing depends on any one member.
 """
 
 import errno
@@ -18,6 +19,7 @@ from jacaros.runtime.files.private import private_folder
 
 _STARTING = 10.0
 """Seconds after which a socket that refuses connections is that of a dead member; before, it may still be starting."""
+_MARK = ".member"
 _LONGEST = 103
 """Bytes of a path of a socket on macOS; 107 on Linux."""
 
@@ -35,21 +37,24 @@ def rendezvous(fleet: str) -> tuple[Path, list[Path]]:
         raise UsageError(
             f"error: the path `{own}` is too long for a socket\n  = help: set TMPDIR to a shorter one"
         )
-    own.touch(mode=0o600)
-    return own, [each for each in sorted(folder.glob("*.sock")) if each != own and _is_live(each)]
+    mark = own.with_suffix(_MARK)
+    mark.touch(mode=0o600)
+    others = [each for each in sorted(folder.glob(f"*{_MARK}")) if each != mark and _is_live(each)]
+    return own, [each.with_suffix(".sock") for each in others]
 
 
-def _is_live(path: Path) -> bool:
-    """Return whether a member is or may be behind a socket; otherwise remove it."""
+def _is_live(mark: Path) -> bool:
+    """Return whether a member is or may be behind a socket; otherwise remove its files."""
     if sys.platform == "win32":
         return False  # there is no private folder
     with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as probe:
         probe.settimeout(0.1)  # a frozen member may have no place left for connections
-        if probe.connect_ex(str(path)) not in (errno.ECONNREFUSED, errno.ENOENT):
+        if probe.connect_ex(str(mark.with_suffix(".sock"))) not in (errno.ECONNREFUSED, errno.ENOENT):
             return True
     with suppress(OSError):
-        if time.time() - path.stat().st_mtime < _STARTING:
+        if time.time() - mark.stat().st_mtime < _STARTING:
             return True
-        path.unlink()
-        path.with_name(f"{path.name}.lock").unlink()
+    for suffix in (".sock", ".sock.lock", _MARK):
+        with suppress(OSError):
+            mark.with_suffix(suffix).unlink()
     return False
