@@ -39,6 +39,12 @@ fleet_options = with_options(
         "Repeatable.",
         name="fleet_allow",
     ),
+    option(
+        "--fleet-lease S",
+        "Seconds without a sign of life after which another member is lost (default: 2).",
+        click.FloatRange(0.5),
+        default=2.0,
+    ),
 )
 """Add the options of a fleet; the command's class must be `RunCommand`."""
 _ARGUMENTS = f"{__name__}.arguments"
@@ -107,7 +113,9 @@ def join_of(options: RunOptions, log: Callable[[str], None]) -> Join | None:
     from jacaros.fleet.rights import read_rights
 
     keys = options.fleet_keys or find_keys(options.fleet, options.member)
-    network = Network(options.fleet, options.member, keys, tuple(options.fleet_routers))
+    network = Network(
+        options.fleet, options.member, keys, tuple(options.fleet_routers), lease=options.fleet_lease
+    )
     reach = "on this computer alone" if keys is None else f"with the keys in {keys}"
     log(f"[fleet] {network.member} in the fleet {network.fleet}, {reach}")
     carrier = ZenohCarrier(network, lambda line: log(f"[fleet] {line}"))

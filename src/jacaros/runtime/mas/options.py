@@ -41,6 +41,7 @@ class RunOptions(GraphAddress):
         member: name of this system in the fleet. None: the name of the project.
         fleet_keys: folder with the keys of this member. None: the fleet is limited to this computer.
         fleet_routers: addresses of routers of the fleet, such as ``192.168.1.5:7447``.
+        fleet_lease: seconds without a sign of life after which another member is lost.
         fleet_allow: what other members may do here, such as ``lab=send,see``.
         explain: keep the history of the run from its start, for `Mas.explain` and ``.why``.
         plain: run plans and rules as the language defines them, without generated code. The default is what
@@ -68,6 +69,7 @@ class RunOptions(GraphAddress):
     fleet_keys: Path | None = None
     fleet_routers: Sequence[str] = ()
     fleet_allow: Sequence[str] = ()
+    fleet_lease: float = 2.0
     explain: bool = False
     plain: bool = field(default_factory=lambda: os.environ.get("JACAROS_PLAIN", "0") not in ("", "0"))
 

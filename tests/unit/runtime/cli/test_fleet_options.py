@@ -6,7 +6,9 @@ from typing import Any
 import pytest
 from command_lab import Outcome
 
+from jacaros.fleet.network import Network
 from jacaros.runtime.cli import run
+from jacaros.runtime.cli.fleet_options import join_of
 from jacaros.runtime.cli.nodes import arguments_of_nodes
 from jacaros.runtime.cli.outputs import RequestedOutputs
 from jacaros.runtime.mas.deployment import Deployment
@@ -148,3 +150,12 @@ def test_each_node_has_output_files_and_keys_of_its_own() -> None:
         *("--replay", "base.r.html"),
         *("--fleet-keys", str(Path("keys/base"))),
     ]
+
+
+def test_the_lease_reaches_the_network(monkeypatch: pytest.MonkeyPatch) -> None:
+    networks: list[Network] = []
+    monkeypatch.setattr(
+        "jacaros.fleet.on_zenoh.ZenohCarrier", lambda network, *more: networks.append(network)
+    )
+    assert join_of(RunOptions(fleet="lab", member="robot", fleet_lease=6.0), lambda text: None) is not None
+    assert [each.lease for each in networks] == [6.0]
