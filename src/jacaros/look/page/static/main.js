@@ -27,7 +27,9 @@ import { Run } from "./run.js";
 import { Selection } from "./selection.js";
 import { Tabs } from "./tabs.js";
 import { Time } from "./time.js";
+import { TimeAxis } from "./time_axis.js";
 import { TimelineView } from "./timeline.js";
+import { TimeView } from "./time_view.js";
 import { World } from "./world.js";
 import { WorldTools } from "./world_tools.js";
 
@@ -51,7 +53,7 @@ export function startPage({ live, commands }) {
   const environment = new Environment(), messages = new Messages(), causes = new Causes(), debugging = new Debugging(), fleet = new Fleet();
   const models = [world, links, log, minds, environment, messages, causes, debugging, fleet];
   const run = new Run(models), selection = new Selection(), time = new Time(run, live);
-  const context = { run, selection, commands, time, open: (panel) => tabs.open(panel), actions: new Actions() };
+  const context = { run, selection, commands, time, open: (panel) => tabs.open(panel), actions: new Actions(), axis: new TimeAxis(time) };
   context.breakpoints = new Breakpoints(context, debugging);
   const at = (id) => document.getElementById(id);
 
@@ -72,10 +74,11 @@ export function startPage({ live, commands }) {
     [at("controls"), new ControlsView(at("controls"), context, { debugging, minds })],
     [at("robots"), new RobotsView(at("robots"), context, world, links)],
     [at("log"), new LogView(at("log"), context, log)],
+    [at("when"), new TimeView(at("when"), context)],
     [at("timeline"), new TimelineView(at("timeline"), context, log)],
   ];
 
-  const page = new Page({ run, selection, time, commands, world, map, tabs, beside });
+  const page = new Page({ run, selection, time, axis: context.axis, commands, world, map, tabs, beside });
   listenToKeys(time);
   page.chooseTheme(fragment().get("theme") ?? recall("theme") ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light"));
   at("theme").addEventListener("click", () => {
@@ -101,10 +104,11 @@ class Page {
     const stale = () => { this.isStale = true; };
     this.run.onChange(stale);
     this.time.onChange(stale);
+    this.axis.onChange(stale);
     this.selection.onChange(stale);
     this.commands.onChange(stale);
     const sizes = new ResizeObserver(stale);
-    for (const id of ["map", "timeline", "log"]) sizes.observe(document.getElementById(id));
+    for (const id of ["map", "timeline", "log", "when"]) sizes.observe(document.getElementById(id));
     document.body.classList.remove("starting");
     const tick = (moment) => {
       this.tick(this.last === undefined ? 0 : Math.min(0.25, (moment - this.last) / 1000));

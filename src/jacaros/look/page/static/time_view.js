@@ -1,0 +1,79 @@
+import { button, clock, element, isDark, themeColor } from "./elements.js";
+import { fitted } from "./time_canvas.js";
+
+const RIGHT = 12;  // pixels after the range
+const RULER = 18;  // pixels
+const KEYS = { "+": 1.5, "=": 1.5, "-": 1 / 1.5, "_": 1 / 1.5 };
+
+/** Time: the ruler, the line of the moment that is shown, and zoom; lanes and curves draw themselves below it. */
+export class TimeView {
+  constructor(root, context) {
+    Object.assign(this, { root, axis: context.axis, time: context.time, run: context.run });
+    this.ruler = element("canvas", "ruler");
+    this.ruler.setAttribute("aria-hidden", "true");
+    this.now = element("div", "now");
+    this.body = root.querySelector(".times");
+    this.body.prepend(this.ruler);
+    this.body.append(this.now);
+    this.tools = element("div", "tools", this.tool("−", "Show a longer time", () => this.axis.zoom(1 / 1.5)),
+      this.tool("+", "Show a shorter time", () => this.axis.zoom(1.5)), this.tool("All", "Show the whole run", () => this.axis.all()));
+    root.prepend(element("header", "", element("h2", "", "Time"), this.tools));
+    this.ruler.addEventListener("click", ({ offsetX }) => this.time.go(this.axis.t(offsetX)));
+    root.tabIndex = 0;
+    root.addEventListener("keydown", (event) => this.press(event));
+  }
+
+  get empty() { return this.run.end === 0; }
+
+  tool(text, label, act) {
+    const made = button("plain layer", act, text);
+    made.setAttribute("aria-label", label);
+    made.title = label;
+    return made;
+  }
+
+  show(t) {
+    const { axis, body } = this, { clientWidth } = body;
+    axis.left = Math.round(Math.min(130, clientWidth * 0.22));
+    axis.width = Math.max(10, clientWidth - axis.left - RIGHT);
+    axis.update(t);
+    const x = axis.x(t);
+    this.now.hidden = !axis.has(t);
+    this.now.style.transform = `translateX(${x.toFixed(1)}px)`;
+    const stamp = `${axis.from} ${axis.to} ${clientWidth} ${isDark()}`;
+    if (stamp === this.stamp) return;
+    this.stamp = stamp;
+    this.draw(clientWidth);
+  }
+
+  draw(width) {
+    const pen = fitted(this.ruler, width, RULER), ticks = this.axis.ticks(), isFine = ticks.length > 1 && ticks[1] - ticks[0] < 0.1;
+    pen.font = "11px system-ui, sans-serif";
+    pen.fillStyle = themeColor("muted");
+    pen.textAlign = "center";
+    for (const t of ticks) {
+      const x = Math.round(this.axis.x(t));
+      pen.fillRect(x, RULER - 4, 1, 4);
+      pen.fillText(isFine ? `${t.toFixed(2)} s` : tickText(t, ticks), x, RULER - 6);
+    }
+  }
+
+  /** Zoom and pan with the keys, when the panel itself has the focus. */
+  press(event) {
+    if (event.target !== this.root || event.ctrlKey || event.metaKey || event.altKey) return;
+    const { axis } = this, factor = KEYS[event.key];
+    if (factor) axis.zoom(factor);
+    else if (event.key === "ArrowLeft" || event.key === "ArrowRight") axis.pan((event.key === "ArrowLeft" ? -0.1 : 0.1) * axis.span);
+    else if (event.key === "0") axis.all();
+    else return;
+    event.preventDefault();
+  }
+}
+
+/** A moment as 1:05, with hours in long runs, and tenths when the ticks are near. */
+function tickText(t, ticks) {
+  if (ticks.length > 1 && ticks[1] - ticks[0] < 1) return clock(t);
+  const seconds = Math.round(t), two = (n) => String(n).padStart(2, "0");
+  if (seconds < 3600) return `${Math.floor(seconds / 60)}:${two(seconds % 60)}`;
+  return `${Math.floor(seconds / 3600)}:${two(Math.floor(seconds / 60) % 60)}:${two(seconds % 60)}`;
+}
