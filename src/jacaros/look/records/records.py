@@ -153,14 +153,30 @@ class PlanRecord(Struct):
     end: int | None = None
 
 
+class ThresholdRecord(Struct, omit_defaults=True):
+    """A comparison of a belief's argument with a number, or with the argument of another belief."""
+
+    belief: str
+    argument: int
+    operator: str
+    value: float | None = None
+    other: Maybe = None
+    other_argument: int = 0
+    plan: Id = None
+    rule: Maybe = None
+
+
 class ProgramRecord(EventRecord):
     """`agent`; `plans`: a list of `id`, `label`, `trigger`, `context` (text, empty without one), `file`, `line`, `end`
-    (last line); `rules`: a list of texts. Repeated when its plans change
+    (last line); `rules`: a list of texts; `thresholds`: a list of comparisons in conditions: `belief`, its name;
+    `argument`, counted from 0; `operator`; `value`, a number, or `other` and `other_argument` (0 if missing), a belief;
+    `plan`, an `id`, or `rule`, a name. Repeated when its plans change
     """
 
     agent: str
     plans: Sequence[PlanRecord] | None
     rules: Sequence[str] | None = None
+    thresholds: Sequence[ThresholdRecord] = ()
 
 
 class BeliefRecord(EventRecord):

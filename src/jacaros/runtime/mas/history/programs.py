@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
+from jacaros.agents.checks.thresholds import Argument, Threshold, thresholds
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import SourceFile
 from jacaros.agents.language.lowering import format_term
@@ -14,6 +15,8 @@ from jacaros.look.records import records
 from jacaros.look.records.records import RecordSink
 from jacaros.look.records.words import named
 
+_Described = tuple[list[records.PlanRecord], list[records.ThresholdRecord]]
+
 
 class ProgramRecords:
     """Records the programs of agents. Agents with the same program share the texts.
@@ -25,7 +28,7 @@ class ProgramRecords:
     def __init__(self, tell: RecordSink) -> None:
         self._tell = tell
         self._files: dict[str, str] = {}
-        self._known: dict[int, tuple[ProgramPlans, list[records.PlanRecord]]] = {}
+        self._known: dict[int, tuple[ProgramPlans, _Described]] = {}
 
     def begin(self, mind: Mind) -> "PlanNumbers":
         """Record the program of an agent. Return the numbers of its plans."""
@@ -35,22 +38,20 @@ class ProgramRecords:
 
     def record(self, mind: Mind, numbers: "PlanNumbers") -> None:
         """Record the current plans and rules of an agent."""
-        library = mind.library
+        library, rules = mind.library, list(_rules(mind))
         if library.plans is library.program.plans and numbers.count_from_one(library.plans):
-            plans = self._of_program(library.program)
+            plans, compared = self._of_program(library.program, rules)
         else:
-            plans = [_plan(plan, numbers[plan]) for plan in every_plan(library.plans)]
-        rules = list(_rules(mind))
+            plans, compared = _described(library.plans, rules, numbers)
         for span in (each.span for each in (*(plan.node for plan in library.plans), *rules)):
             if span is not None:
                 self._source(span.file)
-        self._tell(records.ProgramRecord(mind.name, plans, [_written(rule) for rule in rules]))
+        self._tell(records.ProgramRecord(mind.name, plans, [_written(rule) for rule in rules], compared))
 
-    def _of_program(self, program: ProgramPlans) -> list[records.PlanRecord]:
+    def _of_program(self, program: ProgramPlans, rules: Sequence[nodes.Rule]) -> _Described:
         known = self._known.get(id(program))
         if known is None:
-            numbers = PlanNumbers(program.plans)
-            known = program, [_plan(plan, numbers[plan]) for plan in every_plan(program.plans)]
+            known = program, _described(program.plans, rules, PlanNumbers(program.plans))
             self._known[id(program)] = known
         return known[1]
 
@@ -75,6 +76,29 @@ class PlanNumbers(dict[Plan, int]):
     def __missing__(self, plan: Plan) -> int:
         self[plan] = number = len(self) + 1
         return number
+
+
+def _described(plans: Sequence[Plan], rules: Sequence[nodes.Rule], numbers: PlanNumbers) -> _Described:
+    every = list(every_plan(plans))
+    known = {id(plan.node): numbers[plan] for plan in every}
+    compared: list[records.ThresholdRecord] = []
+    for each in thresholds([*(plan.node for plan in every), *rules]):
+        record = _threshold(each, known.get(id(each.clause)))
+        if record not in compared:
+            compared.append(record)
+    return [_plan(plan, numbers[plan]) for plan in every], compared
+
+
+def _threshold(found: Threshold, plan: int | None) -> records.ThresholdRecord:
+    (name, _, place), clause = found.belief, found.clause
+    record = records.ThresholdRecord(name, place, found.operator, plan=plan)
+    if isinstance(found.value, Argument):
+        record.other, record.other_argument = found.value.name, found.value.place
+    else:
+        record.value = found.value
+    if isinstance(clause, nodes.Rule):
+        record.rule = clause.head.functor
+    return record
 
 
 def _plan(plan: Plan, number: int) -> records.PlanRecord:

@@ -31,6 +31,9 @@ def test_a_program_has_its_plans_rules_and_source(tmp_path):
     records = records_of({"ann": file})
     (program,) = of(records, "program")
     assert program["rules"] == ["safe(X) :- p(X) & X > 2"]
+    assert program["thresholds"] == [
+        {"belief": "p", "argument": 0, "operator": ">", "value": 2.0, "rule": "safe"}
+    ]
     first, second = program["plans"]
     place = {"file": first["file"], "line": 4, "end": 6}
     assert first == {"id": 1, "label": "first", "trigger": "+!go", "context": "safe(Y)", **place}
