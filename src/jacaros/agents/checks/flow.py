@@ -1,0 +1,487 @@
+"""Collect who can make a belief true in a program, and who reads it, with what is known of the values.
+
+>>> from jacaros.agents.language.loader import load_program
+>>> program, _ = load_program("robot.asl", "mode(idle). +!go : mode(M) <- -+mode(3); .send(bob, tell, at(home)).")
+>>> flow = flow_of(program, {})
+>>> [(each.how, each.values[0].kind) for each in flow.adders["mode"]]
+[('fact', 'atom'), ('step', 'number')]
+>>> [(each.how, each.key) for each in flow.readers]
+[('condition', ('mode', 1))]
+"""
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Final, NamedTuple
+
+from jacaros.agents.checks.formulas import conditions
+from jacaros.agents.language import nodes
+from jacaros.agents.language.lowering import format_term
+from jacaros.agents.language.nodes import UNDECLARED, Declaration, children
+from jacaros.agents.terms.functions import ARITIES
+
+Key = tuple[str, int]
+"""Name and number of arguments; the name of a strongly negated belief begins with ``~``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Value:
+    """What is known of an argument.
+
+    Attributes:
+        kind: ``number``, ``string``, ``atom``, ``list`` or ``structure``; empty: anything.
+        options: the only values that it can have, as written; empty: any of its kind.
+        unit: of a number, in words: ``degrees``, ``percent``, ``0 to 1``; empty if unknown.
+        whole: whether a number has no decimals.
+    """
+
+    kind: str = ""
+    options: tuple[str, ...] = ()
+    unit: str = ""
+    whole: bool = False
+
+    def fits(self, other: "Value") -> bool:
+        """Return whether both may be the same value."""
+        if not self.kind or not other.kind:
+            return True
+        alike = self.kind == other.kind
+        return alike and not (self.options and other.options and set(self.options).isdisjoint(other.options))
+
+
+UNKNOWN: Final = Value()
+
+
+@dataclass(frozen=True, slots=True)
+class Adder:
+    """What can make a belief true, or cause its event.
+
+    Attributes:
+        how: ``fact``, ``rule``, ``step``, ``message``, ``answer``, ``plan`` (for a test goal), ``property`` or ``signal``.
+        size: number of arguments; None: any.
+        values: what is known of them.
+        literal: where a program says so.
+    """
+
+    how: str
+    size: int | None
+    values: tuple[Value, ...] = ()
+    literal: nodes.Literal | None = None
+    rule: nodes.Rule | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Reader:
+    """What asks for a belief, or reacts to its event.
+
+    Attributes:
+        how: ``condition``, ``event`` (of a plan or ``.wait``) or ``deletion``.
+        clause: the plan, rule or goal that it is in.
+        sign: ``+`` or ``-`` of an event.
+        denied: whether it is below a ``not``.
+    """
+
+    how: str
+    literal: nodes.Literal
+    clause: nodes.Node
+    sign: str = ""
+    denied: bool = False
+
+    @property
+    def key(self) -> Key:
+        """Name and number of arguments."""
+        return key_of(self.literal)
+
+
+@dataclass
+class ProgramFlow:
+    """The beliefs of one program with its includes; those of other namespaces than the default one are left out.
+
+    Attributes:
+        adders: what gives the agent beliefs, by name.
+        told: what gives them to other agents.
+        readers: in source order for each clause.
+        mentioned: names of other terms that are computed with or passed on, so they may become beliefs unseen.
+        said, spelled: words of strings that are not only printed; words of strings that may be read as terms.
+        is_open: beliefs, plans or agents come from elsewhere at run time.
+        tells_unseen: messages may tell other agents anything.
+        actions: the steps that are actions of the environment.
+        files: the program's own files.
+    """
+
+    adders: dict[str, list[Adder]] = field(default_factory=dict)
+    told: dict[str, list[Adder]] = field(default_factory=dict)
+    readers: list[Reader] = field(default_factory=list)
+    mentioned: set[Key] = field(default_factory=set)
+    said: set[str] = field(default_factory=set)
+    spelled: set[str] = field(default_factory=set)
+    is_open: bool = False
+    tells_unseen: bool = False
+    actions: list[nodes.Literal] = field(default_factory=list)
+    files: set[str] = field(default_factory=set)
+
+
+def flow_of(
+    program: nodes.Program,
+    actions: Mapping[str, Declaration],
+    observables: Mapping[str, Sequence[Adder]] | None = None,
+) -> ProgramFlow:
+    """Return the flow of a program.
+
+    Args:
+        program: the program with its includes.
+        actions: the internal actions by name.
+        observables: properties and signals whose values variables may have.
+    """
+    collector = _Collector(actions, observables or {})
+    for belief in program.beliefs:
+        collector.collect(belief, is_fact=isinstance(belief, nodes.Literal))
+    for goal in program.goals:
+        collector.collect(goal)
+    for plan in program.plans:
+        collector.collect(plan)
+    found = collector.found
+    spans = [each.span for each in (*program.beliefs, *program.goals, *program.plans)]
+    found.files = {each.file.name for each in spans if each is not None and each.file.name[:1] != "$"}
+    return found
+
+
+def key_of(literal: nodes.Literal) -> Key:
+    """Name and number of arguments of a belief."""
+    name = literal.functor.strip("'")
+    return (f"~{name}" if literal.negated else name), len(literal.arguments)
+
+
+def is_own(literal: nodes.Literal) -> bool:
+    """Return whether a literal is in a file of the project, not in a library of JaCaROS."""
+    return literal.span is not None and not literal.span.file.name.startswith("$")
+
+
+def source_of(literal: nodes.Literal) -> str:
+    """Return the source that a literal asks for, such as ``percept``; empty if it asks for any."""
+    for each in literal.annotations.items if literal.annotations is not None else ():
+        if isinstance(each, nodes.Literal) and each.functor == "source" and len(each.arguments) == 1:
+            source = each.arguments[0]
+            if isinstance(source, nodes.Literal) and not source.arguments:
+                return key_of(source)[0]
+    return ""
+
+
+class Flow:
+    """The beliefs of all agents of a project.
+
+    Args:
+        programs: the programs of its agents.
+        observables: the properties and signals of its artifacts, by name.
+    """
+
+    def __init__(
+        self, programs: Sequence[ProgramFlow], observables: Mapping[str, Sequence[Adder]] | None = None
+    ) -> None:
+        self.programs, self._observables = programs, observables or {}
+
+    @property
+    def is_open(self) -> bool:
+        """Whether beliefs, plans or agents come from elsewhere at run time."""
+        return any(each.is_open for each in self.programs)
+
+    def adders(self, program: ProgramFlow) -> dict[str, list[Adder]]:
+        """Return everything that can give an agent beliefs, by name.
+
+        Agents with a file in common count as one: a belief that one of them has may be what its plans are for.
+        """
+        kin = [each for each in self.programs if each is program or each.files & program.files]
+        found: dict[str, list[Adder]] = {}
+        for table in (
+            *(each.adders for each in kin),
+            *(each.told for each in self.programs),
+            self._observables,
+        ):
+            for name, adders in table.items():
+                found.setdefault(name, []).extend(adders)
+        return found
+
+
+# Values of arguments.
+
+
+def value_of(term: nodes.Node, variables: Mapping[str, Value]) -> Value:
+    """Return what is known of a term."""
+    match term:
+        case nodes.Variable(annotations=None, negated=False):
+            return variables.get(term.name, UNKNOWN)
+        case nodes.Number():
+            return Value("number", (format_term(term),))
+        case nodes.Arithmetic():
+            return Value("number")
+        case nodes.FunctionCall() if term.name in ARITIES:
+            return Value("number")
+        case nodes.String():
+            return Value("string", (format_term(term),))
+        case nodes.ListTerm():
+            return Value("list")
+        case nodes.Literal(negated=False, namespace=None, annotations=None):
+            name, size = key_of(term)
+            return Value("structure", (f"{name}/{size}",)) if size else Value("atom", (name,))
+    return UNKNOWN
+
+
+def merged(values: Iterable[Value]) -> Value:
+    """Return what is known of a value that is one of these."""
+    found = list(values)
+    kinds, units = {each.kind for each in found}, {each.unit for each in found}
+    if len(kinds) != 1:
+        return UNKNOWN
+    options = {option: None for each in found for option in each.options}
+    is_any = any(not each.options for each in found)
+    unit = units.pop() if len(units) == 1 else ""
+    return Value(kinds.pop(), () if is_any else tuple(options), unit, all(each.whole for each in found))
+
+
+def variables_of(clause: nodes.Node, known: Mapping[str, Sequence[Adder]]) -> dict[str, Value]:
+    """Return what is known of the variables of a clause, from the beliefs that it reads.
+
+    A variable that two beliefs give different kinds or units is unknown.
+    """
+    found: dict[str, Value] = {}
+    for literal in _given(clause):
+        adders = known.get(key_of(literal)[0], ())
+        size = len(literal.arguments)
+        for place, argument in enumerate(literal.arguments) if adders else ():
+            if not isinstance(argument, nodes.Variable) or argument.annotations is not None:
+                continue
+            value = merged(place_of(each, place) for each in adders if each.size in (None, size))
+            before = found.setdefault(argument.name, value)
+            if before != value:
+                found[argument.name] = merged((before, value))
+    return found
+
+
+def place_of(adder: Adder, place: int) -> Value:
+    """Return what is known of one of its values."""
+    return adder.values[place] if place < len(adder.values) else UNKNOWN
+
+
+def _given(clause: nodes.Node) -> Iterator[nodes.Literal]:
+    """Yield the belief literals that give the variables of a clause their values."""
+    stack: list[tuple[nodes.Node, bool]] = [(clause, False)]
+    while stack:
+        node, asked = stack.pop()
+        if isinstance(node, nodes.Trigger):
+            if node.kind == "" and isinstance(node.literal, nodes.Literal):
+                yield node.literal
+        elif isinstance(node, nodes.Literal):
+            if asked and node.namespace is None:
+                yield node
+        elif isinstance(node, nodes.And | nodes.Or):
+            stack += [(each, asked) for each in node.operands]
+        elif not isinstance(node, nodes.Not | nodes.InternalAction | nodes.PlanTerm | nodes.RuleTerm):
+            asked_here = set(map(id, conditions(node)))
+            stack += [(each, id(each) in asked_here) for each in children(node)]
+
+
+# Collecting.
+
+_WORD: Final = re.compile(r"\w+")
+_READABLE: Final = re.compile(r"[(+!:]|<-")
+"""Text that may be read as a term, goal or plan."""
+_READ: Final = ".term2string"
+_DELETES: Final = ".abolish"
+_TELLS, _ASKS = ("tell", "signal"), ("askOne", "askAll")
+_PLANS_TOLD: Final = "tellHow"
+
+
+class _At(NamedTuple):
+    """Where a node is.
+
+    Attributes:
+        asked: it is a condition.
+        denied: it is below ``not``.
+        passed: a term here may become a belief unseen; values of beliefs and printed terms may not.
+        read: a string here may be read as a term.
+    """
+
+    asked: bool = False
+    denied: bool = False
+    passed: bool = True
+    read: bool = False
+
+
+class _Collector:
+    """Collects the flow of one clause after the other."""
+
+    def __init__(
+        self, actions: Mapping[str, Declaration], observables: Mapping[str, Sequence[Adder]]
+    ) -> None:
+        self.found = ProgramFlow()
+        self._actions, self._observables = actions, observables
+        self._clause: nodes.Node = nodes.Number(0.0)
+        self._variables: dict[str, Value] | None = None
+        self._stack: list[tuple[nodes.Node, _At]] = []
+
+    def collect(self, clause: nodes.Plan | nodes.Rule | nodes.Literal, is_fact: bool = False) -> None:
+        """Collect from a plan, a rule, an initial belief (*is_fact*) or an initial goal."""
+        self._clause, self._variables = clause, None
+        if is_fact:
+            self._add(self.found.adders, "fact", clause)
+        elif isinstance(clause, nodes.Literal):
+            self._push(_At(), *_below(clause))
+        else:
+            self._push(_At(), clause)
+        while self._stack:
+            node, at = self._stack.pop()
+            self._look(node, at)
+
+    def _push(self, at: _At, *below: nodes.Node) -> None:
+        self._stack += [(node, at) for node in reversed(below)]
+
+    def _look(self, node: nodes.Node, at: _At) -> None:
+        match node:
+            case nodes.Trigger():
+                self._react(node)
+            case nodes.BeliefChange():
+                self._change(node)
+            case nodes.InternalAction():
+                self._call(node, at)
+            case nodes.Achieve(goal=nodes.Literal() as goal):
+                self._push(_At(), *_below(goal))
+            case nodes.ExternalAction(action=nodes.Literal() as action):
+                self.found.actions.append(action)
+                self._push(_At(), *_below(action))
+            case nodes.Literal():
+                self._literal(node, at)
+            case nodes.String():
+                self._string(node, at)
+            case nodes.FunctionCall(name=".count"):
+                self._push(at._replace(asked=True), *node.arguments)
+            case nodes.Rule():
+                self._add(self.found.adders, "rule", node.head, node)
+                self._push(_At(asked=True), node.body)
+            case nodes.RuleTerm():
+                self._push(at, node.rule)
+            case nodes.Not():
+                self._push(at._replace(denied=True), node.operand)
+            case nodes.And() | nodes.Or():
+                self._push(at, node.left, node.right)
+            case nodes.Plan(label=label) if isinstance(label, nodes.Literal):
+                self._push(_At(passed=False), *_below(label))
+                self._push_children(node, at, label)
+            case _:
+                self._push_children(node, at)
+
+    def _push_children(self, node: nodes.Node, at: _At, without: nodes.Node | None = None) -> None:
+        asked = set(map(id, conditions(node)))
+        below = [each for each in children(node) if each is not without]
+        for each in reversed(below):
+            self._stack.append((each, at._replace(asked=id(each) in asked)))
+
+    def _react(self, trigger: nodes.Trigger) -> None:
+        literal = trigger.literal
+        if not isinstance(literal, nodes.Literal):
+            return
+        if trigger.kind == "" and trigger.operator in "+-":
+            self._read("event", literal, trigger.operator)
+        elif trigger.kind == "?" and trigger.operator == "+":
+            self._add(self.found.adders, "plan", literal)
+        self._push(_At(passed=False), *_below(literal))
+
+    def _change(self, change: nodes.BeliefChange) -> None:
+        operand = change.operand
+        if not isinstance(operand, nodes.Literal):
+            self.found.is_open |= isinstance(operand, nodes.Variable)
+            self._push(_At(), operand)
+            return
+        if "+" in change.operator:
+            self._add(self.found.adders, "step", operand)
+        else:
+            self._read("deletion", operand)
+        self._push(_At(passed=False), *_below(operand))
+
+    def _literal(self, literal: nodes.Literal, at: _At) -> None:
+        if at.asked and literal.namespace is None:
+            self._read("condition", literal, denied=at.denied)
+            at = _At(passed=False)
+        elif at.passed:
+            self.found.mentioned.add(key_of(literal))
+        asked = set(map(id, conditions(literal)))
+        for each in reversed(list(_below(literal))):
+            self._stack.append((each, at._replace(asked=id(each) in asked)))
+
+    def _string(self, string: nodes.String, at: _At) -> None:
+        if at.passed:
+            words = _WORD.findall(string.value)
+            self.found.said.update(words)
+            if at.read or _READABLE.search(string.value):
+                self.found.spelled.update(words)
+
+    # Internal actions.
+
+    def _call(self, call: nodes.InternalAction, at: _At) -> None:
+        action = self._actions.get(call.name, UNDECLARED)
+        self.found.is_open |= action.brings_in
+        place, arguments = action.performative, list(call.arguments)
+        if place is not None and len(arguments) > place + 1:
+            self._tell(arguments[place], arguments[place + 1], bool(arguments[place + 2 :]))
+            arguments = arguments[:place] + arguments[place + 2 :]
+        if action.condition is not None and len(arguments) > action.condition:
+            self._push(_At(asked=True), arguments.pop(action.condition))
+        below = _At(passed=not action.prints, read=call.name == _READ or action is UNDECLARED)
+        for each in arguments:
+            if action.awaits and not isinstance(each, nodes.BodyTerm):
+                self._push(_At(asked=True), each)
+            elif action.awaits:
+                self._await(each)
+            elif call.name == _DELETES and isinstance(each, nodes.Literal):
+                self._read("deletion", each)
+            else:
+                self._push(below, each)
+
+    def _await(self, awaited: nodes.Node) -> None:
+        """Note the event ``{+b}`` or ``{-b}`` that a ``.wait`` waits for: it parses as a belief change."""
+        for step in awaited.body.steps if isinstance(awaited, nodes.BodyTerm) else ():
+            if isinstance(step, nodes.BeliefChange) and isinstance(step.operand, nodes.Literal):
+                self._read("event", step.operand, step.operator)
+                self._push(_At(passed=False), *_below(step.operand))
+
+    def _tell(self, performative: nodes.Node, content: nodes.Node, has_answer: bool) -> None:
+        word = performative.functor if isinstance(performative, nodes.Literal) else ""
+        contents = content.items if isinstance(content, nodes.ListTerm) else (content,)
+        for each in contents:
+            if not isinstance(each, nodes.Literal):
+                self.found.tells_unseen |= isinstance(each, nodes.Variable) and word in ("", *_TELLS)
+                self._push(_At(read=True), each)
+            elif word in _TELLS or not word:
+                self._add(self.found.told, "message", each)
+            elif word in _ASKS and not has_answer:
+                self._add(self.found.adders, "answer", each)
+            else:
+                self._push(_At(), *((each,) if word in _ASKS else _below(each)))
+        self.found.tells_unseen |= word == _PLANS_TOLD and isinstance(content, nodes.Variable)
+
+    # Adders and readers.
+
+    def _read(self, how: str, literal: nodes.Literal, sign: str = "", denied: bool = False) -> None:
+        if literal.namespace is None:
+            self.found.readers.append(Reader(how, literal, self._clause, sign, denied))
+
+    def _add(
+        self, table: dict[str, list[Adder]], how: str, literal: nodes.Node, rule: nodes.Rule | None = None
+    ) -> None:
+        if not isinstance(literal, nodes.Literal) or literal.namespace is not None:
+            self.found.is_open |= isinstance(literal, nodes.Literal | nodes.Variable) and isinstance(
+                literal.namespace, nodes.Variable
+            )
+            return
+        if self._variables is None:
+            self._variables = variables_of(self._clause, self._observables)
+        known = {} if how in ("rule", "plan") else self._variables
+        values = tuple([value_of(each, known) for each in literal.arguments])
+        name, size = key_of(literal)
+        table.setdefault(name, []).append(Adder(how, size, values, literal, rule))
+        self._push(_At(passed=False), *_below(literal))
+
+
+def _below(literal: nodes.Literal) -> Iterator[nodes.Node]:
+    """Yield the arguments and the annotations of a literal."""
+    yield from literal.arguments
+    if literal.annotations is not None:
+        yield from literal.annotations.items
