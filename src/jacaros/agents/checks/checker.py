@@ -11,20 +11,18 @@
 
 import re
 from bisect import bisect_left
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from itertools import chain
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Final
 
+from jacaros.agents.checks.annotations import wrong_labels, wrong_needs, wrong_supervision
+from jacaros.agents.checks.formulas import clauses as clauses_of
 from jacaros.agents.checks.formulas import (
-    annotations_of,
     contradiction,
     is_true,
-    labelled,
     singletons,
     singletons_of_facts,
     vain_comparisons,
 )
-from jacaros.agents.checks.formulas import clauses as clauses_of
 from jacaros.agents.checks.goals import (
     KnownActions,
     acting_conditions,
@@ -35,11 +33,9 @@ from jacaros.agents.checks.goals import (
     wrong_arguments,
 )
 from jacaros.agents.language import nodes
-from jacaros.agents.language.cursor import is_slip_of
 from jacaros.agents.language.diagnostics import LEVELS, Diagnostic, SourceFile, Span, problem
 from jacaros.agents.language.lexer import Comment, Token, tokenize
 from jacaros.agents.language.nodes import ByKind, is_ground
-from jacaros.runtime.files.texts import did_you_mean, suggestion
 
 # Comments that switch warnings off.
 #
@@ -155,7 +151,7 @@ def _mistakes(program: nodes.Program, known: KnownActions, errors: Sequence[Diag
         *acting_conditions(found, known),
         *unknown_performatives(found, known),
         *contexts_never_true(found),
-        *wrong_labels(found),
+        *wrong_labels(program, found),
         *wrong_supervision(program.goals, found),
         *wrong_needs(found),
     ]
@@ -193,9 +189,6 @@ def _holds_any(span: Span | None, wrong: Mapping[int, Sequence[int]]) -> bool:
 
 
 # Check for plans that can never be selected, and for handlers that drop more than you may expect.
-
-_OWN_WORDS: Final = ("atomic", "breakpoint", "all_unifs", "urgency", "needs", "policy")
-"""Annotations that have a meaning in labels, besides those that supervise."""
 
 
 def never_selected(program: nodes.Program, found: ByKind, known: KnownActions) -> Iterator[Diagnostic]:
@@ -332,193 +325,3 @@ def narrow_handlers(program: nodes.Program) -> Iterator[Diagnostic]:
                 trigger.span,
                 "add a failure plan without a context; the failure is not passed to the goals further out",
             )
-
-
-def wrong_labels(found: ByKind) -> Iterator[Diagnostic]:
-    """Warn of misspelt annotations of labels, and of an ``urgency`` that is not a non-negative integer."""
-    for item in chain.from_iterable(map(labelled, found.of(nodes.Plan))):
-        yield from _misspelt(item, "label", (*_OWN_WORDS, *_OF_LABELS))
-        if item.functor == "urgency" and not _is_urgency(item):
-            yield problem(
-                "wrong-urgency",
-                "urgency must be a non-negative integer; this one has no effect",
-                item.span,
-                "write a number, such as `urgency(10)`; the greatest goes first",
-            )
-
-
-def _misspelt(item: nodes.Literal, what: str, words: Sequence[str]) -> Iterator[Diagnostic]:
-    meant = [word for word in words if is_slip_of(item.functor, word)]
-    if meant:
-        message = f"{what} annotation `{item.functor}` has no meaning"
-        yield problem("misspelt-annotation", message, item.span, did_you_mean(meant[:1]))
-
-
-def _is_urgency(item: nodes.Literal) -> bool:
-    if len(item.arguments) != 1:
-        return False
-    argument = item.arguments[0]
-    if isinstance(argument, nodes.Number):
-        return argument.value >= 0 and float(argument.value).is_integer()
-    # Its value is known only at run time.
-    return isinstance(argument, nodes.Arithmetic)
-
-
-# Check annotations of goals and labels that supervise: deadlines, attempts, periods and conditions.
-
-
-_Check = Callable[[tuple[nodes.Term, ...]], bool]
-_HELP: Final = {
-    "within": "write a number of milliseconds, such as `within(5000)`",
-    "hard_deadline": "write a number of milliseconds, such as `hard_deadline(5000)`",
-    "every": "write a number of milliseconds, such as `every(1000)`",
-    "retry": "write the number of retries and a delay in milliseconds, such as `retry(3)` or `retry(3, 500)`",
-    "while": "write one condition, such as `while(battery(B) & B > 20)`",
-    "cleanup": "write one goal, such as `cleanup(park)`",
-    "achieves": "write a condition and a time in milliseconds, such as `achieves(docked(true))` or "
-    "`achieves(docked(true), 2000)`",
-}
-
-
-def _number(term: nodes.Term, least: float) -> bool:
-    """Return whether a term may be a number, at least *least*; computed values are known only at run time."""
-    if isinstance(term, nodes.Number):
-        return term.value >= least
-    return isinstance(term, nodes.Variable | nodes.Arithmetic | nodes.FunctionCall)
-
-
-def _is_time(arguments: tuple[nodes.Term, ...]) -> bool:
-    """Return whether there is one positive number of milliseconds."""
-    return len(arguments) == 1 and _number(arguments[0], 1e-9)
-
-
-def _is_retry(arguments: tuple[nodes.Term, ...]) -> bool:
-    """Return whether there is a number of retries, and optionally a delay."""
-    if not 1 <= len(arguments) <= 2 or not _number(arguments[0], 1):
-        return False
-    count = arguments[0]
-    whole = not isinstance(count, nodes.Number) or float(count.value).is_integer()
-    return whole and (len(arguments) == 1 or _number(arguments[1], 0))
-
-
-def _is_goal(arguments: tuple[nodes.Term, ...]) -> bool:
-    return len(arguments) == 1 and isinstance(arguments[0], nodes.Literal | nodes.Variable)
-
-
-def _is_achieved(arguments: tuple[nodes.Term, ...]) -> bool:
-    """Return whether there is a condition, and optionally a time."""
-    value = nodes.Number | nodes.String | nodes.ListTerm
-    return (
-        1 <= len(arguments) <= 2
-        and not isinstance(arguments[0], value)
-        and all(_number(time, 0) for time in arguments[1:])
-    )
-
-
-_CHECKS: Final[dict[str, _Check]] = {
-    **dict.fromkeys(("within", "hard_deadline", "every"), _is_time),
-    "retry": _is_retry,
-    "while": lambda arguments: len(arguments) == 1,
-    "cleanup": _is_goal,
-    "achieves": _is_achieved,
-}
-_OF_GOALS: Final = ("within", "hard_deadline", "every", "retry", "achieves")
-_OF_LABELS: Final = ("within", "while", "cleanup", "achieves")
-_MISPLACED: Final = {
-    "goals": (("while",), "write it in the label of a plan: `@p[while(ready)] +!g <- ...`"),
-    "test goals": (
-        ("within", "every", "retry", "achieves"),
-        "write it at a goal that asks: `!ask[within(5000)]`",
-    ),
-    "plans": (("every", "retry", "hard_deadline"), "write it at the goal: `!g[{}]`"),
-}
-"""Annotations that have no effect on these, and where they belong."""
-
-
-def wrong_supervision(goals: Sequence[nodes.Literal], found: ByKind) -> Iterator[Diagnostic]:
-    """Warn of supervising annotations of goals and labels that have no effect."""
-    for goal in (*goals, *(step.goal for step in found.of(nodes.Achieve))):
-        yield from _wrong_of(annotations_of(goal), _OF_GOALS, "goals")
-    for test in found.of(nodes.Test):
-        yield from _wrong_of(annotations_of(test.formula), (), "test goals")
-    for plan in found.of(nodes.Plan):
-        yield from _wrong_of(labelled(plan), _OF_LABELS, "plans")
-
-
-def _wrong_of(items: Sequence[nodes.Literal], valid: Sequence[str], where: str) -> Iterator[Diagnostic]:
-    misplaced, help = _MISPLACED[where]
-    for item in items:
-        word = item.functor
-        if word in valid and not _CHECKS[word](item.arguments):
-            yield problem("wrong-supervision", f"invalid `{word}`", item.span, _HELP[word])
-        elif word in valid and word in ("while", "achieves"):
-            yield from _never_true(item, where)
-        elif word in misplaced and item.arguments:
-            message = f"`{word}` has no effect on {where}"
-            yield problem("wrong-supervision", message, item.span, help.format(_example(word)))
-
-        elif where == "goals" and item.arguments:
-            yield from _misspelt(item, "goal", valid)
-
-
-def _never_true(item: nodes.Literal, where: str) -> Iterator[Diagnostic]:
-    why = contradiction(item.arguments[0])
-    if why is not None:
-        yield problem("context-never-true", f"this {where[:-1]} always fails: {why}", item.span)
-
-
-def _example(word: str) -> str:
-    return _HELP[word].rpartition("such as ")[2].partition(" or ")[0].strip("`")
-
-
-# Check annotations ``needs(..)`` of labels and goals: needs that can never be met, and unknown policies.
-
-
-_POLICIES = ("wait", "refuse")
-_NAME = re.compile(r"[A-Za-z_/][A-Za-z0-9_/]*")
-
-
-def wrong_needs(found: ByKind) -> Iterator[Diagnostic]:
-    """Warn of needs that no run can meet."""
-    for items in _annotated(found):
-        needs = [item for item in items if item.functor == "needs"]
-        for need in needs:
-            if None in map(_resource, need.arguments):
-                help = "write names, such as `wheels`"
-                yield problem("wrong-needs", "expected a resource", need.span, help)
-        if needs:
-            yield from _wrong_policies(items)
-
-
-def needs_of(found: ByKind) -> Iterator[tuple[str, nodes.Literal]]:
-    """Yield the names of resources that plans and goals need, each with its annotation."""
-    for item in chain.from_iterable(_annotated(found)):
-        for argument in item.arguments if item.functor == "needs" else ():
-            name = _resource(argument)
-            if name is not None:
-                yield name, item
-
-
-def _annotated(found: ByKind) -> Iterator[list[nodes.Literal]]:
-    yield from map(labelled, found.of(nodes.Plan))
-    yield from (annotations_of(goal.goal) for goal in found.of(nodes.Achieve))
-
-
-def _resource(argument: nodes.Node) -> str | None:
-    """Return the name of a resource; None if the argument is not one."""
-    if isinstance(argument, nodes.String):
-        return argument.value if _NAME.fullmatch(argument.value) else None
-    if isinstance(argument, nodes.Literal) and not argument.negated and not argument.arguments:
-        return argument.functor
-    return None
-
-
-def _wrong_policies(items: Sequence[nodes.Literal]) -> Iterator[Diagnostic]:
-    for item in items:
-        if item.functor != "policy":
-            continue
-        given = item.arguments[0] if len(item.arguments) == 1 else None
-        name = given.functor if isinstance(given, nodes.Literal) and not given.arguments else ""
-        if name not in _POLICIES:
-            help = suggestion(name, _POLICIES, f"write {', '.join(_POLICIES)}")
-            yield problem("wrong-needs", f"unknown policy `{name}`", item.span, help)

@@ -130,7 +130,7 @@ def test_misspelt_performatives_and_annotations_are_reported():
         "unknown-performative"
     ]
     assert warnings("+!g <- .send(bob, askone, p).")[0].help == "did you mean `askOne`?"
-    assert codes("@a[atomc] +!g. @b[atomic, priority(2), tests] +!h.") == ["misspelt-annotation"]
+    assert codes("@a[atomc] +!g. @b[atomic, weight(2), tests] +!h.") == ["misspelt-annotation"]
     wrong = ["urgency", "urgency(high)", "urgency(1.5)", "urgency(-1)", "urgency(_)", "urgency(1, 2)"]
     assert [codes(f"@a[{each}] +b.") for each in wrong] == [["wrong-urgency"]] * len(wrong)
     assert codes("@a[urgency(0)] +b. @c[urgency(10), atomic] +d. @e[urgency(2 * 3)] +f.") == []
@@ -143,7 +143,7 @@ def test_misspelt_performatives_and_annotations_are_reported():
         "+!g(X) <- a(X). +!g(1) <- b.",
         "+!g(_, Y) : true <- a(Y). +!g(Y, Y) : p <- b(Y).",
         "+p(1). +p(1) : q.",
-        "@a[atomic] +!g <- a. @b[priority(3)] +!g <- b.",
+        "@a[atomic] +!g <- a. @b[weight(3)] +!g <- b.",
         "+!h <- a. { +e <- a. +e <- b. }",
     ],
 )
@@ -304,7 +304,7 @@ ACHIEVES = (
         ("+!g <- !g[retry(3, -1)].", RETRY),
         ("+!g <- ?g[every(100)].", "write it at a goal that asks: `!ask[within(5000)]`"),
         ("@p[retry(3)] +!g.", "write it at the goal: `!g[retry(3)]`"),
-        ("+!g <- !g[while(g)].", "write it in the label of a plan: `@p[while(ready)] +!g <- ...`"),
+        ("+!g <- !g[while(g)].", "write it in the label of a plan: `@p[while(g)] +!g <- ...`"),
         ("@p[cleanup(3)] +!g.", "write one goal, such as `cleanup(park)`"),
         ("@p[while(a, b)] +!g.", "write one condition, such as `while(battery(B) & B > 20)`"),
         ("+!g <- !g[achieves].", ACHIEVES),
@@ -317,6 +317,35 @@ ACHIEVES = (
 def test_annotations_that_act_are_valid_and_at_their_places(text, help_):
     (found,) = warnings(text)
     assert (found.code, found.help) == ("wrong-supervision", help_)
+
+
+@pytest.mark.parametrize(
+    ("text", "help_"),
+    [
+        ("@a[urgent(10)] +b.", "did you mean `urgency(10)`?"),
+        ("@a[need(wheels)] +b.", "did you mean `needs(wheels)`?"),
+        ("@a[timeout(500)] +!g.", "did you mean `within(500)`?"),
+        ("@a[retries(3)] +!g.", "write it at the goal: `!g[retry(3)]`"),
+        ("!g[timeout(500)]. +!g.", "did you mean `within(500)`?"),
+        ("+!g <- !g[resources(a, b)].", "did you mean `needs(a,b)`?"),
+        ("+!g <- !g[urgent(3)].", "write it in the label of a plan: `@p[urgency(3)] +!g <- ...`"),
+    ],
+)
+def test_other_words_for_annotations_are_reported(text, help_):
+    (found,) = [each for each in warnings(text) if each.code != "loop-without-wait"]
+    assert (found.code, found.help) == ("misspelt-annotation", help_)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "!g[priority(3)]. +!g[priority(P)] <- .print(P).",
+        "@a[priority(2)] +!g. select__option(_, _, P, _) :- P = 1.",
+        "@a[urgent] +b. @c[deadline] +d.",
+    ],
+)
+def test_annotations_that_the_program_reads_may_have_any_name(text):
+    assert codes(text) == []
 
 
 def test_labels_are_looked_at_and_valid_annotations_that_act_are_not_reported():

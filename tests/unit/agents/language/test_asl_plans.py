@@ -3,7 +3,7 @@
 import pytest
 from asl_lab import belief_texts, errors, parse_plan, plan_texts, program
 
-from jacaros.agents.checks.checker import wrong_needs
+from jacaros.agents.checks.annotations import wrong_needs
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import AslError
 from jacaros.agents.language.loader import load_program, parse_plans

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from jacaros.agents.body.body import keys
-from jacaros.agents.checks.checker import needs_of
+from jacaros.agents.checks.annotations import needs_of
 from jacaros.agents.checks.formulas import clauses as clauses_of
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic
