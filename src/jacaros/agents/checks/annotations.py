@@ -25,7 +25,7 @@ _MEANT: Final = {
     other: word
     for word, others in {
         "atomic": "exclusive synchronized uninterruptible",
-        "urgency": "urgent priority prio importance",
+        "urgency": "urgent prio",
         "needs": "need require requires resource resources",
         "within": "deadline timeout time_out time_limit",
         "every": "period periodic interval",
@@ -50,11 +50,15 @@ def wrong_labels(program: nodes.Program, found: ByKind) -> Iterator[Diagnostic]:
 
     An annotation that the program reads may have any name.
     """
-    labels = list(chain.from_iterable(map(labelled, found.of(nodes.Plan))))
+    of_plans = [labelled(plan) for plan in found.of(nodes.Plan)]
+    labels = list(chain.from_iterable(of_plans))
+    tests = {
+        id(item) for items in of_plans if any(each.functor == "test" for each in items) for item in items
+    }
     goals = [*program.goals, *(step.goal for step in found.of(nodes.Achieve))]
     asked = list(chain.from_iterable(map(annotations_of, goals)))
     unlike = [
-        *(_unlike(item, "label", (*_OF_PLANS, *_OF_LABELS)) for item in labels),
+        *(_unlike(item, "label", (*_OF_PLANS, *_OF_LABELS)) for item in labels if id(item) not in tests),
         *(_unlike(item, "goal", (*_OF_GOALS, "needs", "policy")) for item in asked if item.arguments),
     ]
     reported = [each for each in unlike if each is not None]

@@ -8,7 +8,6 @@
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from math import inf
 from typing import Any, Final, cast
 
 from jacaros.agents.language import nodes
@@ -91,37 +90,67 @@ def is_true(formula: nodes.Term | None) -> bool:
     )
 
 
-def contradiction(formula: nodes.Term) -> str | None:
-    """Explain why *formula* never holds, or return None if that is not evident."""
-    parts = cast("list[nodes.Term]", operands(formula)) if isinstance(formula, nodes.And) else [formula]
-    return _constant(parts) or _both_ways(parts) or _two_values(parts) or _empty_range(parts)
+def contradiction(formula: nodes.Term, constants: bool = True) -> str | None:
+    """Explain why *formula* never holds, or return None if that is not evident, or only *constants* are compared."""
+    if isinstance(formula, nodes.Or):
+        reasons = [contradiction(cast("nodes.Term", each), constants) for each in operands(formula)]
+        return None if None in reasons else reasons[0]
+    parts = _conjuncts(formula)
+    return (_constant(parts) if constants else None) or _both_ways(parts) or _no_value(parts)
+
+
+def _conjuncts(formula: nodes.Term) -> list[nodes.Term]:
+    """Return the parts of a conjunction; ``not X < 3`` is ``X >= 3``."""
+    parts = operands(formula) if isinstance(formula, nodes.And) else [formula]
+    return [_without_not(cast("nodes.Term", part)) for part in parts]
+
+
+_OPPOSITE: Final = {"==": r"\==", r"\==": "==", "<": ">=", ">=": "<", ">": "<=", "<=": ">"}
+_MIRRORED: Final = {"<": ">", ">": "<", "<=": ">=", ">=": "<="}
+
+
+def _without_not(part: nodes.Term) -> nodes.Term:
+    inner = part.operand if isinstance(part, nodes.Not) else None
+    if isinstance(inner, nodes.Relation) and inner.operator in _OPPOSITE:
+        return nodes.replace(inner, operator=_OPPOSITE[inner.operator])
+    return part
 
 
 def _constant(parts: Sequence[nodes.Term]) -> str | None:
-    """``false``, ``not true`` or ``2 > 3``."""
+    """``false``, ``not true``, ``2 > 3``, ``a == b`` or ``X < X``."""
     for part in parts:
         if isinstance(part, nodes.Literal) and part.functor == "false" and not part.arguments:
             return "its condition is false"
         if isinstance(part, nodes.Not) and is_true(part.operand):
             return "`not true` never holds"
-        if (
-            isinstance(part, nodes.Relation)
-            and isinstance(part.left, nodes.Number)
-            and isinstance(part.right, nodes.Number)
-            and (holds := BINARY[part.operator].numbers) is not None
-            and not holds(part.left.value, part.right.value)
-        ):
+        if isinstance(part, nodes.Relation) and _never_holds(part):
             return f"`{format_term(part)}` never holds"
     return None
 
 
+def _never_holds(relation: nodes.Relation) -> bool:
+    left, right, operator = relation.left, relation.right, relation.operator
+    if isinstance(left, nodes.Number) and isinstance(right, nodes.Number):
+        holds = BINARY[operator].numbers
+        return holds is not None and not holds(left.value, right.value)
+    if isinstance(left, nodes.Variable) and left == right:
+        return operator in ("<", ">", r"\==")
+    if _is_constant(left) and _is_constant(right):
+        return operator == r"\==" if left == right else operator in ("=", "==")
+    return False
+
+
 def _both_ways(parts: Sequence[nodes.Term]) -> str | None:
-    """``p(X) & not p(X)``."""
-    plain = [part for part in parts if isinstance(part, nodes.Literal) and _is_fixed(part)]
+    r"""``p(X) & not p(X)``, ``X == Y & X \== Y``."""
+    plain = [part for part in parts if isinstance(part, nodes.Literal | nodes.Relation) and _is_fixed(part)]
     for part in parts:
         if isinstance(part, nodes.Not) and part.operand in plain:
             text = format_term(part.operand)
             return f"`{text}` and `not {text}` cannot both hold"
+        if isinstance(part, nodes.Relation) and part.operator in _OPPOSITE:
+            other = nodes.replace(part, operator=_OPPOSITE[part.operator])
+            if other in plain:
+                return f"`{format_term(other)}` and `{format_term(part)}` cannot both hold"
     return None
 
 
@@ -130,48 +159,96 @@ def _is_fixed(term: nodes.Term) -> bool:
     return not any(variable.unnamed for variable in variables_in(term))
 
 
-def _two_values(parts: Sequence[nodes.Term]) -> str | None:
-    """``X == 1 & X == 2``."""
-    values: dict[str, nodes.Term] = {}
-    for part in parts:
-        found = _variable_and_constant(part)
-        if found is None or found[1] not in ("=", "=="):
-            continue
-        name, _, value = found
-        if values.setdefault(name, value) != value:
-            return f"{name} cannot be both {format_term(values[name])} and {format_term(value)}"
+_SAYING: Final = {"<": "below ", "<=": "at most ", ">": "above ", ">=": "at least ", r"\==": "not "}
+
+
+def _no_value(parts: Sequence[nodes.Term]) -> str | None:
+    """``X == 1 & X == 2``, ``X < 3 & X > 5``, ``X == 2 & X > 5``."""
+    limits: dict[str, list[tuple[str, nodes.Term]]] = {}
+    for name, operator, value in filter(None, map(_variable_and_constant, parts)):
+        for other, limit in limits.setdefault(name, []):
+            if _exclude(other, limit, operator, value):
+                pair = sorted(((operator, value), (other, limit)), key=lambda each: "=><".find(each[0][0]))
+                said = [f"{_SAYING.get(sign, '')}{format_term(each)}" for sign, each in pair]
+                return f"{name} cannot be both {said[0]} and {said[1]}"
+        limits[name].append((operator, value))
     return None
 
 
-def _empty_range(parts: Sequence[nodes.Term]) -> str | None:
-    """``X < 3 & X > 5``."""
-    below: dict[str, float] = {}
-    above: dict[str, float] = {}
-    for part in parts:
-        found = _variable_and_constant(part)
-        if found is None or not isinstance(found[2], nodes.Number):
-            continue
-        name, operator, number = found[0], found[1], found[2].value
-        if operator in ("<", "<="):
-            below[name] = min(below.get(name, inf), number)
-        elif operator in (">", ">="):
-            above[name] = max(above.get(name, -inf), number)
-    for name, most in below.items():
-        if above.get(name, -inf) > most:
-            return f"{name} cannot be both above {above[name]:g} and below {most:g}"
-    return None
+def _exclude(one: str, limit: nodes.Term, other: str, value: nodes.Term) -> bool:
+    """Return whether no value is in both relations to constants."""
+    if one == "==":
+        return not _is_in(limit, other, value)
+    if other == "==":
+        return not _is_in(value, one, limit)
+    if not isinstance(limit, nodes.Number) or not isinstance(value, nodes.Number) or r"\==" in (one, other):
+        return False
+    if one[0] == other[0]:
+        return False
+    low, high = (limit.value, value.value) if one[0] == ">" else (value.value, limit.value)
+    return low > high or (low == high and not one.endswith("=") & other.endswith("="))
+
+
+def _is_in(value: nodes.Term, operator: str, limit: nodes.Term) -> bool:
+    """Return whether a constant is in a relation to another one, or may be: atoms and numbers are not compared."""
+    if operator in ("==", r"\=="):
+        return (value == limit) is (operator == "==")
+    holds = BINARY[operator].numbers
+    if holds is None or not isinstance(value, nodes.Number) or not isinstance(limit, nodes.Number):
+        return True
+    return bool(holds(value.value, limit.value))
 
 
 def _variable_and_constant(part: nodes.Term) -> tuple[str, str, nodes.Term] | None:
     """Return the variable, the operator and the constant of ``X op constant``."""
-    if not isinstance(part, nodes.Relation) or not isinstance(part.left, nodes.Variable):
+    if not isinstance(part, nodes.Relation):
         return None
-    left, right = part.left, part.right
-    plain = left.annotations is None and not left.unnamed
-    atom = isinstance(right, nodes.Literal) and not right.arguments and right.annotations is None
-    if not plain or not (atom or isinstance(right, nodes.Number | nodes.String)):
+    left, right, operator = part.left, part.right, part.operator
+    if isinstance(right, nodes.Variable):
+        left, right, operator = right, left, _MIRRORED.get(operator, operator)
+    if not isinstance(left, nodes.Variable) or left.annotations is not None or left.unnamed:
         return None
-    return left.name, part.operator, right
+    operator = "==" if operator == "=" else operator
+    return (left.name, operator, right) if _is_constant(right) and operator in _OPPOSITE else None
+
+
+def _is_constant(term: nodes.Term) -> bool:
+    """Return whether a term is a number, a string or an atom."""
+    atom = isinstance(term, nodes.Literal) and not term.arguments and term.annotations is None
+    return atom or isinstance(term, nodes.Number | nodes.String)
+
+
+def implies(formula: nodes.Term, other: nodes.Term) -> bool:
+    """Return whether *other* evidently holds whenever *formula* does: it has the same parts, or less strict ones."""
+    if isinstance(formula, nodes.Or):
+        return all(implies(cast("nodes.Term", each), other) for each in operands(formula))
+    parts = _conjuncts(formula)
+    return all(_follows(part, parts) for part in _conjuncts(other))
+
+
+def _follows(part: nodes.Term, parts: Sequence[nodes.Term]) -> bool:
+    if any(_is_like(part, each, True) for each in parts):
+        return True
+    if isinstance(part, nodes.Or):
+        return any(_follows(cast("nodes.Term", each), parts) for each in operands(part))
+    wanted = _variable_and_constant(part)
+    return wanted is not None and any(
+        known[0] == wanted[0] and _exclude(*known[1:], _OPPOSITE[wanted[1]], wanted[2])
+        for known in filter(None, map(_variable_and_constant, parts))
+    )
+
+
+def _is_like(part: object, other: object, any_term: bool) -> bool:
+    """Return whether two parts are equal but for unnamed variables, which outside of ``not`` are like any term."""
+    if isinstance(part, nodes.Variable) and part.unnamed:
+        return any_term or (isinstance(other, nodes.Variable) and other.unnamed)
+    if isinstance(part, tuple) and isinstance(other, tuple):
+        return len(part) == len(other) and all(
+            _is_like(one, two, any_term) for one, two in zip(part, other, strict=True)
+        )
+    if isinstance(part, nodes.Node) and isinstance(other, nodes.Node) and type(part) is type(other):
+        return _is_like(part.parts(), other.parts(), any_term and not isinstance(part, nodes.Not))
+    return part == other
 
 
 # Check for variables that occur once, and comparisons with variables that have no value.

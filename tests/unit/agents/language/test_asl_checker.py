@@ -145,6 +145,13 @@ def test_misspelt_performatives_and_annotations_are_reported():
         "+p(1). +p(1) : q.",
         "@a[atomic] +!g <- a. @b[weight(3)] +!g <- b.",
         "+!h <- a. { +e <- a. +e <- b. }",
+        "+!g(X) : p(X) <- a(X). +!g(Y) : p(Y) & q <- b(Y).",
+        "+!g : p(X) & X > 3 <- a(X). +!g : p(X) & X >= 5 <- b(X).",
+        "+!g(X) : X > 3 <- a(X). +!g(Y) : 5 == Y <- b(Y).",
+        "+!g : p(_) & not q(_) <- a. +!g : not q(_) & p(X) & r <- b(X).",
+        "+!g : p | q <- a. +!g : q & r <- b.",
+        "+!g : p <- a. +!g : p & q | p & r <- b.",
+        "+b(X) : p(Y) & not q(X, Y) <- a(X, Y). +b(Z) : p(Y) & not q(Z, Y) & r <- b(Z).",
     ],
 )
 def test_a_plan_after_one_for_the_same_events_is_unreachable(text):
@@ -164,6 +171,15 @@ def test_a_plan_after_one_for_the_same_events_is_unreachable(text):
         "+!g <- a. +!g <- b. +!h <- .remove_plan(l).",
         "select__option(_, _, P, _) :- P = 1. +!g <- a. +!g <- b.",
         "+!X <- a(X). +!g <- b.",
+        "+!g : p & q <- a. +!g : p <- b.",
+        "+!g(X) : p(X) <- a(X). +!g(Y) : p(X) <- b(X, Y).",
+        "+!g : p(X) & X > 3 <- a(X). +!g : p(X) & X > 2 <- b(X).",
+        "+!g : not p(Y) <- a. +!g : q(Y) & not p(Y) <- b.",
+        "+!g(X) : not p(X) <- a(X). +!g(home) : not p(home) <- b.",
+        "+!g : .random(X) & X < 3 <- a. +!g : .random(X) & X < 3 <- b.",
+        "+!g(X, X) : p <- a(X). +!g(X, Y) : p <- b(X, Y).",
+        "+!g[source(S)] : p(S) <- a. +!g[source(S)] : p(S) & q <- b.",
+        "+!g : p <- a. +!g : q(X) & X \\== p <- b.",
     ],
 )
 def test_plans_that_may_be_selected(text):
@@ -182,6 +198,14 @@ def test_plans_that_may_be_selected(text):
         "p(X) & X == a & X == b",
         'p(X) & X = 1 & X == "1"',
         "p(X) & X < 3 & X > 5",
+        "p(X) & 3 > X & X >= 3",
+        "p(X) & X == 3 & X > 5",
+        "p(X) & X == a & X \\== a",
+        "p(X) & X < 3 & not X < 4",
+        "p(X) & q(Y) & X == Y & X \\== Y",
+        "home == dock",
+        "p(X) & X \\== X",
+        "p & not p | q & false",
     ],
 )
 def test_conditions_that_contradict_themselves(context):
@@ -197,6 +221,10 @@ def test_conditions_that_contradict_themselves(context):
         "p(X) & not q(X)",
         "p(X) & X \\== a & X \\== b",
         "p(X) & X >= 3 & X <= 3",
+        "p(X) & X > 3 & not X > 5",
+        "p(X) & X > 3 & X > 5 & X \\== 7 & X \\== 8",
+        "p(X) & X == a & X > 5",
+        "p & not p | q",
         "p(X)[source(S)] & not p(X) & q(S)",
         "not false",
     ],
@@ -205,12 +233,21 @@ def test_conditions_that_may_hold(context):
     assert "context-never-true" not in codes(f"+!g : {context} <- a.")
 
 
+def test_conditions_of_rules_and_statements_that_contradict_themselves_are_reported():
+    assert codes("low :- p(X) & X < 3 & X > 5.") == ["context-never-true"]
+    assert (
+        codes("+!g : p(X) <- while (X > 3 & X < 3) { a }; if (X == a & X == b) { c }.")
+        == ["context-never-true"] * 2
+    )
+    assert codes("never :- false. +!g <- if (false) { a }; if (1 > 2) { a }; while (true) { b }.") == []
+
+
 def test_comparing_an_atom_or_a_variable_without_a_value_is_reported():
     assert codes("+!g <- X == 3; a(X).") == ["comparison-without-value"]
     assert codes("+!g : X == 3 & p(X) <- a.") == ["comparison-without-value"]
     assert codes("+!g : x > 3 <- a.") == ["ordered-atom"]
     assert codes("+!g : p(X) <- if (2*X <= limit) { a }.") == ["ordered-atom"]
-    assert codes("+!g : p(X) & X > a & x == 3 <- a.") == []
+    assert codes("+!g : p(X) & X > a & x == X <- a.") == []
     assert codes("+!g(X) <- X == 3. +!h <- ?p(X); X == 3. +!i <- .findall(X, p(X) & X == 2, _).") == []
     assert codes("+!g <- F = (X == 2); X = 1; ?F.") == []
     assert codes("+!g(X) <- X = X + 1; a(X).") == ["changed-variable"]
@@ -339,9 +376,10 @@ def test_other_words_for_annotations_are_reported(text, help_):
 @pytest.mark.parametrize(
     "text",
     [
-        "!g[priority(3)]. +!g[priority(P)] <- .print(P).",
-        "@a[priority(2)] +!g. select__option(_, _, P, _) :- P = 1.",
+        "!g[deadline(3)]. +!g[deadline(P)] <- .print(P).",
+        "@a[deadline(2)] +!g. select__option(_, _, P, _) :- P = 1.",
         "@a[urgent] +b. @c[deadline] +d.",
+        "@t[test, timeout(500)] +!t.",
     ],
 )
 def test_annotations_that_the_program_reads_may_have_any_name(text):
