@@ -1,0 +1,482 @@
+"""Single mistakes in a program, of the kinds that people make: each changes one place of one line.
+
+A mistake that changes nothing is not one. The rules, which look at the texts only and never at what `check` finds:
+
+* unread: a belief is added under another name or with other arguments, and no other place of the project has its name;
+* unmatched: an atom becomes a string that is only printed or passed to an artifact (which takes both), or that is nowhere
+  else, so nothing is compared with it;
+* unobserved: a focus is dropped, and the program has no name that the artifact may show; artifacts in Python are
+  searched for the word;
+* pace: a time to wait is dropped outside of a loop, or a condition to wait for whose beliefs the plan does not ask for
+  later;
+* both: the goal or operation is there with the other number of arguments, too.
+"""
+
+import re
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import chain
+
+from pages import ROOT
+from programs import Program
+
+from jacaros.agents.language import nodes
+from jacaros.agents.language.diagnostics import AslError, SourceFile
+from jacaros.agents.language.loader import read_program
+from jacaros.agents.language.nodes import Node, nodes_in, occurrences, parts_of, walk
+from jacaros.artifacts.env.manual import written_properties, written_signals
+from jacaros.robots.registry import UnknownArtifactType, find_type
+
+MAPPINGS = ROOT / "src/jacaros/robots/mappings"
+LIBRARY = ROOT / "src/jacaros/agents/language/library"
+PRINTING = frozenset({".print", ".println", ".printf"})
+SWAPPED = {
+    "urgency": "urgent",
+    "needs": "need",
+    "within": "timeout",
+    "retry": "retries",
+    "every": "period",
+    "achieves": "achieve",
+    "hard_deadline": "deadline",
+    "error_msg": "error_message",
+    "env_failure_reason": "failure_reason",
+    "source": "sender",
+    "artifact_name": "artifact",
+    "wsp": "workspace",
+}
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """A mutated line.
+
+    Attributes:
+        program: the name of the program or project.
+        file: the file of it.
+        kind: the kind of the mistake.
+        line: the number of the line.
+        before, after: the line without the space around it.
+        equal: the rule by which it changes nothing; empty if it changes something.
+    """
+
+    program: str
+    file: str
+    kind: str
+    line: int
+    before: str
+    after: str
+    equal: str = ""
+
+
+@dataclass(frozen=True)
+class Edit:
+    """A replacement in a line; columns count from 0."""
+
+    kind: str
+    line: int
+    start: int
+    end: int
+    text: str
+    equal: str = ""
+
+
+def mistakes(program: Program) -> Iterator[Mistake]:
+    """Yield all mistakes that the kinds make of a program."""
+    files = program.files()
+    project = Project(files, [name for name in program.mutable(files) if name.endswith(".asl")])
+    for name in program.mutable(files):
+        lines = files[name].split("\n")
+        is_program = name.endswith(".asl")
+        others = chain(dropped_focus(lines, project), units(lines))
+        for edit in project.edits(name) if is_program else others:
+            before = lines[edit.line - 1]
+            after = before[: edit.start] + edit.text + before[edit.end :]
+            yield Mistake(program.name, name, edit.kind, edit.line, before.strip(), after.strip(), edit.equal)
+
+
+def slip(name: str) -> str:
+    """Return a misspelt name: two letters change places, or one is missing."""
+    for at in range(len(name) // 2, 0, -1):
+        one, two = name[at : at + 2].ljust(2, "_")
+        if one != two and (one + two).isalpha():
+            return name[:at] + two + one + name[at + 2 :]
+    return name[:-1] if len(name) > 1 else name + name
+
+
+def _other_case(name: str) -> str:
+    return name[0].swapcase() + name[1:]
+
+
+def shown_by(kind: str, files: dict[str, str]) -> set[str]:
+    """Return the names of the properties and signals of an artifact type, of a mapping or in Python."""
+    if kind.endswith(".yaml"):
+        shipped = MAPPINGS / kind
+        text = files.get(kind) or (shipped.read_text(encoding="utf-8") if shipped.is_file() else "")
+        sections = re.findall(r"^(?:properties|signals):.*\n((?:(?: .*)?\n)*)", text, re.MULTILINE)
+        return {name for section in sections for name in re.findall(r"^  (\w+):", section, re.MULTILINE)}
+    own = [text for name, text in files.items() if name.endswith(".py") and f"class {kind}(" in text]
+    if own:
+        return set(re.findall(r"(?:define_property|signal)\(\s*\"(\w+)\"", own[0]))
+    try:
+        found = find_type(kind)
+    except UnknownArtifactType:
+        return set()
+    return {*written_properties(found), *written_signals(found)}
+
+
+class Project:
+    """The programs of a project, with what the rules ask about all of them."""
+
+    def __init__(self, files: dict[str, str], programs: list[str]) -> None:
+        self.files = files
+        self.programs = {name: self._read(name) for name in programs}
+
+    def _read(self, name: str) -> nodes.Program:
+        def include(path: str, _: str) -> tuple[str, str]:
+            if path.startswith("$jacaros/"):
+                return path, (LIBRARY / path.partition("/")[2]).read_text(encoding="utf-8")
+            raise FileNotFoundError(path)
+
+        program, found = read_program(SourceFile(name, self.files[name]), include)
+        errors = [each for each in found if each.severity == "error"]
+        if errors:
+            raise AslError(errors)
+        return program
+
+    @cached_property
+    def literals(self) -> list[nodes.Literal]:
+        """All literals of all programs."""
+        roots = [(each.beliefs, each.goals, each.plans) for each in self.programs.values()]
+        return list(nodes_in(nodes.Literal, tuple(roots)))
+
+    @cached_property
+    def read(self) -> Counter[str]:
+        """How often names are anything but a fact, or what a step adds."""
+        added = {id(each.operand) for root in self._plans for each in nodes_in(nodes.BeliefChange, root)}
+        facts = {id(each) for program in self.programs.values() for each in program.beliefs}
+        return Counter(each.functor for each in self.literals if id(each) not in added | facts)
+
+    @property
+    def _plans(self) -> list[tuple[nodes.Plan, ...]]:
+        return [program.plans for program in self.programs.values()]
+
+    @cached_property
+    def atoms(self) -> Counter[str]:
+        """How often atoms are in the programs and the other files."""
+        words = Counter(each.functor for each in self.literals if not each.arguments)
+        for name, text in self.files.items():
+            if not name.endswith(".asl"):
+                words.update(re.findall(r"\w+", text))
+        return words
+
+    @cached_property
+    def signatures(self) -> set[tuple[str, int]]:
+        """Names with their numbers of arguments."""
+        return {(each.functor, len(each.arguments)) for each in self.literals}
+
+    def observes(self, kind: str) -> bool:
+        """Return whether the programs have a name that an artifact of this type may show; True for unknown types."""
+        names = shown_by(kind, self.files)
+        return not names or not names.isdisjoint({each.functor for each in self.literals})
+
+    @cached_property
+    def observes_any(self) -> bool:
+        """Return whether the programs have a name that one of the artifacts that they make may show."""
+        made = {
+            argument.value
+            for each in self.literals
+            if each.functor in ("makeArtifact", "use_artifact")
+            for argument in each.arguments[1:2]
+            if isinstance(argument, nodes.String)
+        }
+        return not made or any(map(self.observes, made))
+
+    def edits(self, name: str) -> Iterator[Edit]:
+        """Yield the mistakes in one program."""
+        program = self.programs[name]
+        own = [
+            clause
+            for clause in (*program.beliefs, *program.goals, *program.plans)
+            if clause.span is not None and clause.span.file.name == name
+        ]
+        for clause in own:
+            yield from self._in_clause(clause, clause in program.goals)
+
+    def _in_clause(self, clause: Node, is_goal: bool) -> Iterator[Edit]:
+        seen = Clause(clause, self)
+        if is_goal:
+            yield from seen.dropped_bang(clause)
+            yield from seen.goal(clause)
+        elif isinstance(clause, nodes.Literal):
+            yield from seen.belief(clause, is_added=True)
+        for node in walk(clause):
+            if node is not clause:
+                yield from seen.of(node)
+
+
+class Clause:
+    """The mistakes in one clause."""
+
+    def __init__(self, clause: Node, project: Project) -> None:
+        self.clause, self.project = clause, project
+        self.names = occurrences(clause)
+        self.printed = {
+            id(argument)
+            for call in nodes_in(nodes.InternalAction, clause)
+            if call.name in PRINTING or call.name == ".send"
+            for argument in (call.arguments if call.name in PRINTING else call.arguments[:1])
+        }
+        self.passed = {
+            id(part)
+            for step in nodes_in(nodes.ExternalAction, clause)
+            for part in walk(step.action.arguments if isinstance(step.action, nodes.Literal) else ())
+        } | {
+            id(part)
+            for step in nodes_in(nodes.Achieve, clause)
+            if isinstance(step.goal, nodes.Literal) and step.goal.functor == "use_artifact"
+            for part in walk(step.goal.arguments)
+        }
+        self.annotations = {
+            id(item) for marks in nodes_in(nodes.Annotations, clause) for item in marks.items
+        } | {
+            id(part)
+            for marks in nodes_in(nodes.Annotations, clause)
+            for item in marks.items
+            for part in walk(item)
+        }
+        self.roles = dict(self._roles())
+
+    def _roles(self) -> Iterator[tuple[int, str]]:
+        """Yield what literals are: goals, actions, or beliefs that are added or asked for."""
+        for node in walk(self.clause):
+            if isinstance(node, nodes.Achieve):
+                yield id(node.goal), "goal"
+            elif isinstance(node, nodes.ExternalAction):
+                yield id(node.action), "action"
+            elif isinstance(node, nodes.Trigger):
+                yield id(node.literal), "goal" if node.kind == "!" else "asked"
+            elif isinstance(node, nodes.BeliefChange):
+                yield id(node.operand), "added" if "+" in node.operator else "asked"
+            elif isinstance(node, nodes.Test):
+                yield from ((id(part), "asked") for part in parts_of(node.formula))
+            elif isinstance(node, nodes.Plan):
+                conditions = () if node.context is None else parts_of(node.context)
+                yield from ((id(part), "asked") for part in conditions)
+                yield id(node.label), "label"
+            elif isinstance(node, nodes.Rule):
+                yield from ((id(part), "asked") for part in parts_of(node.body))
+            elif isinstance(node, (nodes.If, nodes.For, nodes.While)):
+                yield from ((id(part), "asked") for part in parts_of(node.condition))
+
+    def of(self, node: Node) -> Iterator[Edit]:
+        """Yield the mistakes at one node."""
+        if isinstance(node, nodes.Variable):
+            yield from self.variable(node)
+        elif isinstance(node, nodes.Achieve):
+            if not node.separate and isinstance(node.goal, nodes.Literal):
+                yield from self.dropped_bang(node)
+            yield from self.focus_of_library(node)
+        elif isinstance(node, nodes.Constraint):
+            yield from self.wait(node)
+        elif isinstance(node, nodes.ExternalAction):
+            yield from self.focus(node)
+        elif isinstance(node, nodes.Annotations):
+            yield from (edit for item in node.items for edit in self.annotation(item))
+        elif isinstance(node, nodes.Relation):
+            yield from self.percent(node)
+        elif isinstance(node, nodes.Literal):
+            role = self.roles.get(id(node))
+            if role == "goal":
+                yield from self.goal(node)
+            elif role == "action":
+                yield from self.action(node)
+            elif role in ("added", "asked"):
+                yield from self.belief(node, role == "added")
+            elif role is None and id(node) not in self.annotations:
+                yield from self.atom(node)
+
+    # Names and numbers of arguments.
+
+    def _renamed(self, kind: str, literal: nodes.Literal, equal: str = "") -> Iterator[Edit]:
+        if literal.functor in ("true", "false") or literal.functor.startswith("'"):
+            return
+        yield from self._at(kind, literal, literal.functor, slip(literal.functor), equal)
+
+    def _at(self, kind: str, node: Node, old: str, new: str, equal: str = "") -> Iterator[Edit]:
+        """Replace the first *old* in the text of a node, if it begins on that line."""
+        span = node.span
+        if span is None or old == new:
+            return
+        line = span.file.lines[span.line - 1]
+        end = span.end_column - 1 if span.end_line == span.line else len(line)
+        found = re.compile(rf"(?<![\w.]){re.escape(old)}(?!\w)").search(line, span.column - 1, end)
+        if found:
+            yield Edit(kind, span.line, found.start(), found.end(), new, equal)
+
+    def _arity(self, literal: nodes.Literal, equal: str = "") -> Iterator[Edit]:
+        """Drop the last argument, or add one where there is none, or where the line is even."""
+        span = literal.span
+        if span is None or span.line != span.end_line or literal.functor in ("true", "false"):
+            return
+        arguments = literal.arguments
+        start = span.column - 1 + (span.file.lines[span.line - 1][span.column - 1] == "~")
+        name_end = start + len(literal.functor)
+        if not arguments:
+            yield Edit("arity", span.line, name_end, name_end, "(_)", equal or self._both(literal, 1))
+            return
+        last = arguments[-1].span
+        if last is None or last.line != span.line:
+            return
+        if span.line % 2 == 0:
+            at = last.end_column - 1
+            yield Edit("arity", span.line, at, at, ", _", equal or self._both(literal, len(arguments) + 1))
+            return
+        before = arguments[-2].span if len(arguments) > 1 else None
+        from_ = name_end if before is None else before.end_column - 1
+        to = last.end_column if before is None else last.end_column - 1
+        yield Edit("arity", span.line, from_, to, "", equal or self._both(literal, len(arguments) - 1))
+
+    def _both(self, literal: nodes.Literal, count: int) -> str:
+        return "both" if (literal.functor, count) in self.project.signatures else ""
+
+    def belief(self, literal: nodes.Literal, is_added: bool) -> Iterator[Edit]:
+        """Misspell a belief, or change its number of arguments."""
+        equal = "unread" if is_added and not self.project.read[literal.functor] else ""
+        yield from self._renamed("rename-belief", literal, equal)
+        yield from self._arity(literal, equal)
+
+    def goal(self, goal: Node) -> Iterator[Edit]:
+        """Misspell a goal, or change its number of arguments."""
+        if isinstance(goal, nodes.Literal):
+            yield from self._renamed("rename-goal", goal)
+            yield from self._arity(goal)
+
+    def action(self, action: nodes.Literal) -> Iterator[Edit]:
+        """Misspell an operation, or change its number of arguments."""
+        yield from self._renamed("rename-operation", action)
+        yield from self._arity(action)
+
+    # Variables, atoms and strings.
+
+    def variable(self, variable: nodes.Variable) -> Iterator[Edit]:
+        """Misspell a variable that is there more than once, or begin it in lower case."""
+        if variable.unnamed or self.names.get(variable.name, 0) < 2:
+            return
+        yield from self._at("rename-variable", variable, variable.name, slip(variable.name))
+        yield from self._at("case-variable", variable, variable.name, _other_case(variable.name))
+
+    def atom(self, atom: nodes.Literal) -> Iterator[Edit]:
+        """Begin an atom in upper case, or write it as a string."""
+        name = atom.functor
+        if atom.arguments or not name.isidentifier() or name in ("true", "false") or atom.annotations:
+            return
+        is_unmatched = id(atom) in self.printed or id(atom) in self.passed or self.project.atoms[name] < 2
+        yield from self._at("case-atom", atom, name, _other_case(name))
+        yield from self._at("quote", atom, name, f'"{name}"', "unmatched" if is_unmatched else "")
+
+    # What is left out.
+
+    def dropped_bang(self, node: Node) -> Iterator[Edit]:
+        """Post a goal without its ``!``."""
+        span = node.span
+        assert span is not None
+        line = span.file.lines[span.line - 1]
+        at = line.rfind("!", 0, span.column) if isinstance(node, nodes.Literal) else span.column - 1
+        if at >= 0 and line[at] == "!":
+            yield Edit("drop-bang", span.line, at, at + 1, "")
+
+    def wait(self, step: nodes.Constraint) -> Iterator[Edit]:
+        """Leave out a step that waits."""
+        call, span = step.formula, step.span
+        if not isinstance(call, nodes.InternalAction) or call.name != ".wait" or span is None:
+            return
+        line = span.file.lines[span.line - 1]
+        end = span.end_column - 1
+        if span.line == span.end_line and line[end : end + 1] == ";":
+            yield Edit("drop-wait", span.line, span.column - 1, end + 1, "", self._pace(call, step))
+
+    def _pace(self, call: nodes.InternalAction, step: nodes.Constraint) -> str:
+        plan = self.clause
+        if not isinstance(plan, nodes.Plan) or not isinstance(plan.body, nodes.Body):
+            return "pace"
+        later = [each for each in plan.body.steps if each.span and step.span and each.span > step.span]
+        if isinstance(call.arguments[0], nodes.Number):
+            goals = {each.goal for each in nodes_in(nodes.Achieve, tuple(later))}
+            acts = any(True for _ in nodes_in(nodes.ExternalAction, plan.body))
+            names = {each.functor for each in goals if isinstance(each, nodes.Literal)}
+            head = plan.trigger.literal
+            is_loop = isinstance(head, nodes.Literal) and head.functor in names and not acts
+            return "" if is_loop else "pace"
+        awaited = {each.functor for each in nodes_in(nodes.Literal, call.arguments[0])}
+        asked = {each.functor for each in nodes_in(nodes.Literal, tuple(later)) if each.arguments}
+        return "" if awaited & asked else "pace"
+
+    def focus(self, step: nodes.ExternalAction) -> Iterator[Edit]:
+        """Leave out a step that focuses."""
+        span = step.span
+        action = step.action
+        if isinstance(action, nodes.Literal) and action.functor.startswith("focus") and span is not None:
+            line = span.file.lines[span.line - 1]
+            end = span.end_column - 1
+            if span.line == span.end_line and line[end : end + 1] == ";":
+                equal = "" if self.project.observes_any else "unobserved"
+                yield Edit("drop-focus", span.line, span.column - 1, end + 1, "", equal)
+
+    def focus_of_library(self, step: nodes.Achieve) -> Iterator[Edit]:
+        """Make an artifact as the library does, but do not focus it."""
+        goal = step.goal
+        if not isinstance(goal, nodes.Literal) or goal.functor != "use_artifact" or goal.span is None:
+            return
+        line = goal.span.file.lines[goal.span.line - 1]
+        if goal.span.line != goal.span.end_line:
+            return
+        text = line[goal.span.column - 1 : goal.span.end_column - 1]
+        inner = text[text.index("(") + 1 : -1] + (", []" if len(goal.arguments) == 2 else "")
+        equal = "" if self.project.observes(str(getattr(goal.arguments[1], "value", ""))) else "unobserved"
+        at = goal.span.column - 1
+        yield Edit(
+            "drop-focus",
+            goal.span.line,
+            at - 1,
+            goal.span.end_column - 1,
+            f"makeArtifact({inner}, _)",
+            equal,
+        )
+
+    # Annotations and units.
+
+    def annotation(self, item: Node) -> Iterator[Edit]:
+        """Write another word for an annotation."""
+        if isinstance(item, nodes.Literal) and item.functor in SWAPPED:
+            yield from self._at("annotation", item, item.functor, SWAPPED[item.functor])
+
+    def percent(self, relation: nodes.Relation) -> Iterator[Edit]:
+        """Compare the percentage of a battery with a fraction."""
+        right = relation.right
+        if not isinstance(right, nodes.Number) or not isinstance(relation.left, nodes.Variable):
+            return
+        levels = [each for each in nodes_in(nodes.Literal, self.clause) if each.functor == "battery"]
+        if any(each.arguments and each.arguments[0] == relation.left for each in levels):
+            yield from self._at("unit", right, f"{right.value:g}", f"{right.value / 100:g}")
+
+
+def dropped_focus(lines: list[str], project: Project) -> Iterator[Edit]:
+    """Leave out a focus of a project file."""
+    for number, line in enumerate(lines, 1):
+        for found in re.finditer(r"(?<!\w)focus(?:ed-by)?: *([\w.]+(?:, *[\w.]+)*)", line):
+            name = re.split(r"[ ,]+", found[1])[0]
+            artifact = line.split()[1] if "focused-by" in found[0] else name.rpartition(".")[2]
+            declared = re.search(rf"artifact +{artifact} *: *\"?([\w.]+)", "\n".join(lines))
+            mapping = f"{artifact}.yaml" if f'"{artifact}.yaml"' in "\n".join(lines) else ""
+            kind = declared[1] if declared else mapping
+            equal = "" if project.observes(kind) else "unobserved"
+            yield Edit("drop-focus", number, found.start(), found.end(), "", equal)
+
+
+def units(lines: list[str]) -> Iterator[Edit]:
+    """Leave out a unit of a mapping, or write another one."""
+    for number, line in enumerate(lines, 1):
+        for found in re.finditer(r"(, *)unit: *(degrees|percent)", line):
+            yield Edit("unit", number, found.start(), found.end(), "")
