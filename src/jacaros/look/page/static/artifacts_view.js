@@ -4,6 +4,7 @@ import { momentButton, showWhy, whyButton } from "./jumps.js";
 import { Picker } from "./picker.js";
 import { keyed, moveByArrows } from "./refill.js";
 import { Section, age } from "./section.js";
+import { propertyKeys } from "./series_sources.js";
 
 const STANDARD = new Set(["Blackboard", "Console", "ManualRepository", "SystemArtifact", "WorkspaceArtifact"]);  // of every workspace
 const LAST = 8;  // operations and signals that are shown
@@ -74,12 +75,13 @@ export class ArtifactsView {
 function properties(context) {
   return {
     count: (artifact, t) => artifact.properties.at(t).size,
-    stamp: (artifact, t) => `${artifact.properties.countAt(t)} ${artifact.properties.between(t - 2, t).length}`,
+    stamp: (artifact, t) => `${artifact.properties.countAt(t)} ${artifact.properties.between(t - 2, t).length} ${context.curves.stamp}`,
     nodes(artifact, t) {
       const rows = artifact.propertiesAt(t).map((property) => {
         const row = button("belief", () => showWhy(context, { artifact: artifact.path, cause: property.cause || undefined }),
           element("span", "sign", artifact.isRecent(property, t) ? "+" : ""), element("code", "", propertyText(property)), element("span", "by"), age(property.since));
-        return element("li", artifact.isRecent(property, t) ? "recent" : "", keyed(`property ${property.id}`, row));
+        const plot = context.curves.button(propertyKeys(artifact.path, property), propertyText(property));
+        return element("li", artifact.isRecent(property, t) ? "recent" : "", keyed(`property ${property.id}`, row), ...(plot ? [keyed(`plot ${property.id}`, plot)] : []));
       });
       if (!rows.length) return [element("p", "empty", "No properties.")];
       const list = element("ul", "beliefs", ...rows);

@@ -3,6 +3,7 @@ import { showWhy } from "./jumps.js";
 import { placeName } from "./link_words.js";
 import { keyed, moveByArrows } from "./refill.js";
 import { age } from "./section.js";
+import { beliefKeys } from "./series_sources.js";
 
 const MOST = 200;  // beliefs that are shown in one list
 const ANNOTATION = /\[[^\]]*source\([^)]*\)[^\]]*\]$/;
@@ -23,7 +24,7 @@ export class BeliefList {
 
   stamp(mind, t) {
     const recent = mind.beliefs.between(t - 2, t);
-    return `${mind.beliefs.countAt(t)} ${recent.length} ${this.filter.value} ${this.context.commands.can.has("belief")}`;
+    return `${mind.beliefs.countAt(t)} ${recent.length} ${this.filter.value} ${this.context.commands.can.has("belief")} ${this.context.curves.stamp}`;
   }
 
   nodes(mind, t) {
@@ -51,7 +52,8 @@ export class BeliefList {
     const row = button("belief", () => this.choose(mind, belief), element("span", "sign", sign), name, element("span", "by", ...this.by(belief, text)), age(since));
     row.title = `${kind === "gone" ? "removed: " : ""}${text}`;
     const item = element("li", kind, keyed(key, row));
-    const { commands, actions } = this.context;
+    const { commands, actions, curves } = this.context, plot = kind !== "gone" && curves.button(beliefKeys(mind.name, text), main);
+    if (plot) item.append(keyed(`${key} plot`, plot));
     if (commands.can.has("belief") && kind !== "gone") {
       item.append(keyed(`${key} remove`, actions.button("×", `Remove ${main}`, () => commands.send("belief", { agent: mind.name, op: "-", text }))));
     }

@@ -5,6 +5,9 @@ import { Breakpoints } from "./breakpoints.js";
 import { Causes } from "./causes.js";
 import { CausesView } from "./causes_view.js";
 import { ControlsView } from "./controls_view.js";
+import { CurveChoice } from "./curve_choice.js";
+import { CurveThresholds } from "./curve_thresholds.js";
+import { CurvesView } from "./curves_view.js";
 import { Debugging } from "./debugging.js";
 import { isDark, setText } from "./elements.js";
 import { Environment } from "./environment.js";
@@ -22,8 +25,10 @@ import { MessagesView } from "./messages_view.js";
 import { Minds } from "./minds.js";
 import { ProgramView } from "./program_view.js";
 import { QuestionsView } from "./questions_view.js";
+import { Refusals } from "./refusals.js";
 import { RobotsView } from "./robots_view.js";
 import { Run } from "./run.js";
+import { SeriesSources } from "./series_sources.js";
 import { Selection } from "./selection.js";
 import { Tabs } from "./tabs.js";
 import { Time } from "./time.js";
@@ -51,9 +56,11 @@ export const NO_COMMANDS = {
 export function startPage({ live, commands }) {
   const world = new World(), links = new Links(), log = new Log(), minds = new Minds();
   const environment = new Environment(), messages = new Messages(), causes = new Causes(), debugging = new Debugging(), fleet = new Fleet();
-  const models = [world, links, log, minds, environment, messages, causes, debugging, fleet];
+  const sources = new SeriesSources(world), thresholds = new CurveThresholds(minds, sources), refusals = new Refusals();
+  const models = [world, links, log, minds, environment, messages, causes, debugging, fleet, sources, thresholds, refusals];
   const run = new Run(models), selection = new Selection(), time = new Time(run, live);
   const context = { run, selection, commands, time, open: (panel) => tabs.open(panel), actions: new Actions(), axis: new TimeAxis(time) };
+  context.curves = new CurveChoice(sources, thresholds, time);
   context.breakpoints = new Breakpoints(context, debugging);
   const at = (id) => document.getElementById(id);
 
@@ -75,6 +82,7 @@ export function startPage({ live, commands }) {
     [at("robots"), new RobotsView(at("robots"), context, world, links)],
     [at("log"), new LogView(at("log"), context, log)],
     [at("when"), new TimeView(at("when"), context)],
+    [at("curves"), new CurvesView(at("curves"), context, { sources, thresholds, refusals, log, minds })],
     [at("timeline"), new TimelineView(at("timeline"), context, log)],
   ];
 

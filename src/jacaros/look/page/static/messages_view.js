@@ -1,6 +1,8 @@
+import { draggable } from "./curve_choice.js";
 import { button, clock, element } from "./elements.js";
 import { showWhy } from "./jumps.js";
 import { keyed, moveByArrows, refill } from "./refill.js";
+import { messageKeys } from "./series_sources.js";
 
 const ROWS = 60;  // messages in the chart
 const MOST = 8;  // agents that have a line
@@ -57,7 +59,7 @@ export class MessagesView {
     arrow.style.setProperty("--span", String(Math.max(1, last - first + 1)));
     arrow.title = text;
     arrow.setAttribute("aria-label", `${clock(message.sent)} ${message.from} to ${message.to}: ${text}${isRead ? "" : ", not read yet"}`);
-    const row = element("div", `message${this.context.selection.has({ cause: message.id }) ? " selected" : ""}`, element("time", "", clock(message.sent)), keyed(`message ${message.id}`, arrow));
+    const row = element("div", `message${this.context.selection.has({ cause: message.id }) ? " selected" : ""}`, element("time", "", clock(message.sent)), keyed(`message ${message.id}`, draggable(arrow, messageKeys(message))));
     row.setAttribute("role", "listitem");
     return row;
   }

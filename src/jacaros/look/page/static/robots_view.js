@@ -1,5 +1,7 @@
+import { draggable } from "./curve_choice.js";
 import { decimals, button, element, setText } from "./elements.js";
 import { robotColor } from "./palette.js";
+import { robotKeys } from "./series_sources.js";
 
 const FEW = 4;  // robots whose cards show everything; of more, names and batteries
 
@@ -36,7 +38,7 @@ export class RobotsView {
     const title = element("span", "name", card.dot, name);
     card.root = button("robot card", () => this.selection.choose(this.links.selectionOf(name, this.t)), title, card.level, card.gauge,
       card.where, card.state, card.agents);
-    this.root.append(card.root);
+    this.root.append(draggable(card.root, robotKeys(name)));
     return card;
   }
 

@@ -1,0 +1,206 @@
+import { CurveDrawing } from "./curve_drawing.js";
+import { CurveScale, valueAt } from "./curve_scale.js";
+import { planName } from "./curve_thresholds.js";
+import { button, clock, element, isDark, setText } from "./elements.js";
+import { paced } from "./paced.js";
+import { robotColor } from "./palette.js";
+import { Series } from "./series.js";
+import { keyed, refill } from "./refill.js";
+import { fitted } from "./time_canvas.js";
+import { TimePointer } from "./time_pointer.js";
+
+const LEAST = 60;  // pixels: the height of the plot
+const TOP = 14;  // pixels above it, for marks
+const ROW = 12;  // pixels of a row of refusals
+const HIGH = 130;  // pixels: a plot in which the refusals of two plans are drawn, not only of one
+const NEAR = 6;  // pixels between the pointer and a mark
+
+/** Numbers over time: a chip for each, and a plot with two axes, thresholds of contexts, marks of events and of refused plans. */
+export class CurvesView {
+  constructor(root, context, { sources, thresholds, refusals, log, minds }) {
+    Object.assign(this, { root, context, sources, thresholds, refusals, log, minds, axis: context.axis, choice: context.curves });
+    this.sides = new Map();  // by key: the side that you chose
+    this.flips = 0;
+    this.series = new Map();
+    this.chips = element("ul", "chips");
+    this.more = element("select", "more");
+    this.more.setAttribute("aria-label", "Add a curve");
+    this.more.addEventListener("change", () => this.choice.set([this.more.value], true));
+    this.canvas = element("canvas");
+    this.canvas.setAttribute("role", "img");
+    this.tip = element("p", "tip");
+    this.tip.hidden = true;
+    this.hint = element("p", "empty", "Press ∿ beside a belief or property, or drag a robot or message to here.");
+    this.plot = element("div", "plot", this.canvas, this.hint, this.tip);
+    root.append(element("div", "curves-head", this.chips, this.more), this.plot);
+    new TimePointer(this.plot, this.axis, this);
+    this.choice.acceptDrops(root);
+    this.showValues = paced((sources, t) => sources.forEach((source, i) => setText(this.values[i], valueText(source, t))));
+  }
+
+  get empty() { return this.sources.version === 0; }
+
+  show(t) {
+    this.t = t;
+    const shown = this.choice.shown, stamp = `${this.choice.stamp} ${this.sources.version} ${this.flips} ${isDark()}`;
+    if (stamp !== this.stamp) {
+      this.stamp = stamp;
+      this.curves = this.curvesOf(shown);
+      this.fill(shown);
+    }
+    this.showValues(shown, t);
+    this.draw(shown);
+  }
+
+  // ---- chips
+
+  fill(shown) {
+    refill(this.chips, this.curves.map((curve) => this.chip(curve)));
+    this.values = [...this.chips.querySelectorAll(".value")];
+    this.hint.hidden = shown.length > 0;
+    const others = this.sources.shown().filter((each) => !shown.includes(each));
+    this.more.replaceChildren(new Option("+ Curve", ""), ...others.map(({ key, title }) => new Option(title, key)));
+    this.more.hidden = !others.length;
+    this.canvas.setAttribute("aria-label", `Curves of ${shown.map(({ title }) => title).join(", ")}`);
+  }
+
+  chip({ source, side, color }) {
+    const { key, title } = source, dot = element("i", "dot"), other = side === "left" ? "right" : "left";
+    dot.style.background = color;
+    const flip = button("act", () => this.flip(key, other), side === "left" ? "⇤" : "⇥");
+    flip.setAttribute("aria-label", `${title}: use the ${other} axis`);
+    flip.title = `The ${side} axis; press for the ${other} one`;
+    const remove = button("act", () => this.choice.set([key], false), "×");
+    remove.setAttribute("aria-label", `Remove the curve of ${title}`);
+    return element("li", "chip", dot, title, element("b", "value", valueText(source, this.t)), keyed(`side ${key}`, flip), keyed(`remove ${key}`, remove));
+  }
+
+  flip(key, side) {
+    this.sides.set(key, side);
+    this.flips += 1;
+    this.context.time.notify();
+  }
+
+  /** The curves to draw. Those with the unit of the first one, or numbers of its size, have the left axis. */
+  curvesOf(shown) {
+    const groups = shown.map((source) => source.unit || magnitude(this.seriesOf(source)));
+    return shown.map((source, i) => ({
+      source, series: this.seriesOf(source), scale: source.scale ?? 1, color: robotColor(i),
+      side: this.sides.get(source.key) ?? (groups[i] === groups[0] ? "left" : "right"),
+    }));
+  }
+
+  // ---- plot
+
+  draw(shown) {
+    const { axis, plot, log, context: { run } } = this, box = [plot.clientWidth, Math.max(LEAST, plot.clientHeight)];
+    const stamp = [this.stamp, axis.from, axis.to, axis.width, ...box, run.count].join(" ");
+    if (stamp === this.drawn) return;
+    this.drawn = stamp;
+    const rows = this.refusedIn(axis.from, axis.to, box[1] < HIGH ? 1 : 2), bottom = box[1] - 6 - ROW * rows.length;
+    const drawing = new CurveDrawing(fitted(this.canvas, ...box), axis, { top: TOP, bottom, end: run.end });
+    shown.forEach((source, i) => Object.assign(this.curves[i], { series: this.seriesOf(source), lines: this.thresholds.of(source) }));
+    const scales = { left: this.scaleOf("left", bottom), right: this.scaleOf("right", bottom) };
+    drawing.scale(scales.left, "left");
+    this.marks = marksIn(log.marks, axis);
+    for (const mark of this.marks) drawing.mark(mark);
+    drawing.within(() => this.drawCurves(drawing, scales));
+    drawing.scale(scales.right, "right");
+    const name = ([{ agent, plan }]) => planName(this.minds.plan(agent, plan));
+    rows.forEach((runs, n) => drawing.refusals(runs, bottom + 4 + ROW * (n + 0.5), `${countOf(runs)}× ${name(runs)} refused`));
+    this.rows = { bottom, rows };
+  }
+
+  scaleOf(side, bottom) {
+    const own = this.curves.filter((each) => each.side === side);
+    return own.length ? new CurveScale(own, this.axis, TOP, bottom) : null;
+  }
+
+  drawCurves(drawing, scales) {
+    const { curves } = this, labels = [];
+    for (const { lines, side, color } of curves) {
+      for (const line of lines) {
+        const y = drawing.threshold(line, line.source && this.seriesOf(line.source), scales[side], color);
+        if (!Number.isNaN(y)) labels.push([`${line.source ? line.source.title : Number(line.value.toFixed(3))}: ${line.label}`, y, color]);
+      }
+    }
+    for (const curve of curves) drawing.curve(curve, scales[curve.side], curve.color);
+    for (const label of labels) drawing.thresholdLabel(...label);
+  }
+
+  seriesOf(source) {
+    if (!this.series.has(source.key)) this.series.set(source.key, new Series(source.track));
+    const series = this.series.get(source.key);
+    series.grow();
+    return series;
+  }
+
+  /** The refusals of the plans of the user's programs that were refused most often, each plan in a row. */
+  refusedIn(from, to, most) {
+    const plans = new Map();
+    for (const run of this.refusals.between(from, to)) {
+      const key = `${run.agent} ${run.plan}`, plan = this.minds.plan(run.agent, run.plan);
+      if (!plan || plan.file?.startsWith("$")) continue;
+      plans.set(key, [...(plans.get(key) ?? []), run]);
+    }
+    return [...plans.values()].sort((a, b) => countOf(b) - countOf(a)).slice(0, most);
+  }
+
+  refusalText({ agent, plan, count }) { return `${agent}: ${planName(this.minds.plan(agent, plan))} refused ${count === 1 ? "once" : `${count} times`}`; }
+
+  // ---- the pointer
+
+  click(x) {
+    const mark = this.markAt(x);
+    if (!mark) return false;
+    this.context.time.go(mark.t);
+    if (mark.leads) this.context.selection.choose(mark.leads);
+    return true;
+  }
+
+  markAt(x) { return this.marks?.findLast(({ t }) => Math.abs(this.axis.x(t) - x) < NEAR); }
+
+  hover(x, y) {
+    this.tip.hidden = x === null || x < this.axis.left;
+    if (this.tip.hidden) return;
+    setText(this.tip, this.tellAt(x, y));
+    const half = this.tip.offsetWidth / 2;
+    this.tip.style.left = `${Math.max(half, Math.min(this.plot.clientWidth - half, x))}px`;
+  }
+
+  tellAt(x, y) {
+    const { axis, rows: { bottom, rows } } = this, t = axis.t(x), runs = y > bottom ? rows[Math.floor((y - bottom - 4) / ROW)] : undefined;
+    const refused = runs?.find((run) => axis.x(run.from) - NEAR < x && axis.x(run.to) + NEAR > x), mark = this.markAt(x);
+    if (refused) return `${this.refusalText(refused)}, ${clock(refused.from)} to ${clock(refused.to)}: ${refused.why}`;
+    if (mark) return `${clock(mark.t)} ${mark.text}${mark.more ? `, and ${mark.more} more` : ""}`;
+    return [clock(t), ...this.choice.shown.map((source) => `${source.title} ${valueText(source, t)}`)].join("  ");
+  }
+}
+
+/** The power of ten of the largest value, to tell numbers of different sizes apart. */
+function magnitude(series) {
+  const [low, high] = series.extremes(0, series.count);
+  return Math.floor(Math.log10(Math.max(Math.abs(low), Math.abs(high)) || 1));
+}
+
+function countOf(runs) { return runs.reduce((sum, { count }) => sum + count, 0); }
+
+function valueText(source, t) {
+  const value = valueAt(source, t);
+  return Number.isNaN(value) ? "–" : `${Number(value.toFixed(Math.abs(value) < 10 ? 2 : 1))} ${source.unit}`.trim();
+}
+
+/** The marks in view; those of one sort that are near each other are one. */
+function marksIn(marks, axis) {
+  const found = [], last = new Map();
+  for (const mark of marks) {
+    if (!axis.has(mark.t)) continue;
+    const near = last.get(mark.sort);
+    if (near && (mark.t - near.t) < NEAR * axis.grain) near.more += 1;
+    else {
+      last.set(mark.sort, { ...mark, more: 0 });
+      found.push(last.get(mark.sort));
+    }
+  }
+  return found;
+}
