@@ -23,6 +23,7 @@ import { recall, remember } from "./memory.js";
 import { Messages } from "./messages.js";
 import { MessagesView } from "./messages_view.js";
 import { Minds } from "./minds.js";
+import { Divider } from "./panes.js";
 import { ProgramView } from "./program_view.js";
 import { QuestionsView } from "./questions_view.js";
 import { Refusals } from "./refusals.js";
@@ -86,7 +87,11 @@ export function startPage({ live, commands }) {
     [at("timeline"), new TimelineView(at("timeline"), context, log)],
   ];
 
-  const page = new Page({ run, selection, time, axis: context.axis, commands, world, map, tabs, beside });
+  const dividers = [
+    new Divider(at("left"), at("right"), "Width of the details"), new Divider(at("stage"), at("when"), "Height of the time panel"),
+    new Divider(at("panels"), at("log"), "Size of the log"),
+  ];
+  const page = new Page({ run, selection, time, axis: context.axis, commands, world, map, tabs, beside, dividers });
   listenToKeys(time);
   page.chooseTheme(fragment().get("theme") ?? recall("theme") ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light"));
   at("theme").addEventListener("click", () => {
@@ -136,7 +141,6 @@ class Page {
     const t = this.time.now;
     const { world, map } = this;
     document.getElementById("stage").hidden = world.empty;
-    document.body.classList.toggle("no-world", world.empty);
     this.attempt(() => this.tabs.show(t));
     const bare = this.tabs.available.length === 0;
     document.getElementById("nothing").hidden = !bare;
@@ -146,6 +150,7 @@ class Page {
       // Controls also say, beside them, that the run is paused: they have to take this back when the run has ended.
       if (!root.hidden || view.showsAlways) this.attempt(() => view.show(t));
     }
+    for (const divider of this.dividers) divider.show();
     if (!world.empty) this.attempt(() => map.show(t));  // last: the others decide how much room is left for it
     this.summarise(t);
     this.showNotice();
