@@ -44,6 +44,10 @@ RUNS: dict[str, list[list[str]]] = {
         ["view", "damaged.jsonl", "--output", "x.html"],
     ],
     "why": [["why", "r.jsonl", "waiting"], ["why", "r.jsonl", EVIL], ["why", "r.jsonl", "waiting", "--json"]],
+    "plot": [
+        ["plot", "r.jsonl", EVIL, "-o", "x.svg"],
+        ["plot", "damaged.jsonl", "battery", "-o", f"{EVIL}/x.svg"],
+    ],
     "replay": [["replay", "r.jsonl", "--against", "other.asl"], ["replay", "r.jsonl", "--against", EVIL]],
     "world": [["world", "show", "w.yaml"], ["world", "list", EVIL]],
     "sim": [["sim", "w.yaml"], ["sim", EVIL]],

@@ -40,6 +40,10 @@ COMMANDS = {
         "jacaros.runtime.cli.recordings:why",
         "Explain why something did or did not happen in a recorded run.",
     ),
+    "plot": (
+        "jacaros.runtime.cli.exports:plot",
+        "Draw beliefs and other numbers of a recorded run over time.",
+    ),
     "replay": ("jacaros.runtime.cli.recordings:replay", "Replay a recorded run against a changed program."),
     "test": ("jacaros.runtime.cli.test", "Run the tests of agent programs."),
     "sim": ("jacaros.runtime.cli.sim", "Run a robot world as a separate ROS node."),

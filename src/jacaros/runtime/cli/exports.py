@@ -1,0 +1,68 @@
+"""``jacaros plot``: a recorded run outside of the page."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from jacaros.runtime.cli.options import PATH, option
+from jacaros.runtime.cli.outputs import check_output, write_output
+from jacaros.runtime.cli.usage import examples, read_recording, usage_error
+
+if TYPE_CHECKING:
+    from jacaros.look.out.series import Series
+    from jacaros.look.out.svg_plot import Panel
+
+
+@click.command(
+    "plot",
+    epilog=examples(
+        "jacaros plot run.jsonl battery turtlebot.x,turtlebot.y -o run.svg",
+        "jacaros plot run.jsonl robot_1:battery,robot_2:battery -o batteries.svg",
+    ),
+)
+@click.argument("run", type=PATH)
+@click.argument("names", metavar="NAME[,NAME]...", nargs=-1, required=True)
+@option("-o --output FILE.svg", "Write the plot to FILE.svg.", PATH, required=True)
+@option(
+    "--from T", "Begin at time T, in seconds since the start of the run.", float, name="start", default=0.0
+)
+@option("--to T", "End at time T (default: the end of the recording).", float, name="end")
+def plot(run: Path, names: tuple[str, ...], output: Path, start: float, end: float | None) -> None:
+    """Draw numbers of RUN, a recording (`jacaros run FILE --record RUN`), over time, for papers.
+
+    Each argument is a panel; names joined by commas share one.
+
+    \b
+    battery             the first number of a belief, or of a property that no agent believes
+    odom.2              its second argument
+    odom.x              its first (x), second (y) or third (yaw) argument
+    robot_1:battery     the same of one agent, or of one artifact
+    turtlebot.battery   of a robot: x, y, yaw, battery, speed, laser (distance of the nearest echo)
+
+    Triangles on the time axis mark goals that failed, hollow ones if a plan handled the failure. For a list of the
+    names in the recording, give an unknown one.
+    """  # fmt: skip
+    from jacaros.look.out.series import all_series
+    from jacaros.look.out.svg_plot import failures, plot_svg
+
+    check_output(output, "picture")
+    recording = read_recording(run)
+    known = all_series(recording)
+    panels = [_panel(known, each.split(",")) for each in names]
+    end = recording.duration if end is None else end
+    if not start < end:
+        raise usage_error(f"--from {start:g} is not before the end, {end:g}", "name a part of the recording")
+    write_output(output, plot_svg(panels, failures(recording.events), (start, end), run.name))
+    click.echo(f"wrote {output}")
+
+
+def _panel(known: "list[Series]", names: list[str]) -> "Panel":
+    from jacaros.look.out.series import named
+    from jacaros.look.out.svg_plot import Panel
+
+    curves = []
+    for name in names:
+        found = named(known, name)
+        curves += [(name if len(found) == 1 else f"{each.owner}:{name}", each) for each in found]
+    return Panel(curves)

@@ -1,0 +1,54 @@
+"""``jacaros plot``: files, panels and wrong names."""
+
+import json
+from pathlib import Path
+
+import pytest
+from command_lab import Outcome, Told
+
+COMMAND = ("plot",)
+
+
+@pytest.fixture
+def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A recording of two agents with batteries, in the current folder."""
+    monkeypatch.chdir(tmp_path)
+    lines: list[dict[str, object]] = [{"kind": "world", "version": 2, "world": {"name": "lab"}}]
+    for t, agent, level in ((0.0, "one", 90), (0.0, "two", 50), (2.0, "one", 80), (3.0, "two", 40)):
+        data = {"agent": agent, "op": "+", "belief": f"battery({level})"}
+        gone = {"agent": agent, "op": "-", "belief": f"battery({level + 10})"}
+        lines += [{"kind": "event", "t": t, "event": "belief", "data": each} for each in (gone, data)]
+    Path("run.jsonl").write_text("".join(json.dumps(each) + "\n" for each in lines), encoding="utf-8")
+    return tmp_path
+
+
+def test_each_argument_is_a_panel(run: Path, told: Told) -> None:
+    assert told("run.jsonl", "battery", "one:battery,two:battery.x", "-o", "run.svg") == "wrote run.svg\n"
+    svg = Path("run.svg").read_text(encoding="utf-8")
+    assert svg.count(">%</text>") == 2
+    for label, times in (("one:battery", 2), ("two:battery", 1), ("two:battery.x", 1)):
+        assert svg.count(f">{label}</text>") == times
+
+
+def test_a_part_is_drawn_alone(run: Path, told: Told) -> None:
+    told("run.jsonl", "one:battery", "-o", "all.svg")
+    told("run.jsonl", "one:battery", "-o", "part.svg", "--from", "1", "--to", "1.5")
+    assert ">80</text>" in Path("all.svg").read_text(encoding="utf-8")
+    assert ">80</text>" not in Path("part.svg").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error"),
+    [
+        (["batery"], "unknown series: `batery`\n  = help: did you mean `battery`?"),
+        (["battery,"], "unknown series: ``"),
+        (["battery", "--from", "3"], "--from 3 is not before the end, 3"),
+        (["battery", "--from", "nan"], "--from nan is not before the end"),
+        (["battery", "-o", "run.jsonl"], "`run.jsonl` exists and is not a picture"),
+    ],
+)
+def test_wrong_usage_is_reported(run: Path, outcome: Outcome, arguments: list[str], error: str) -> None:
+    code, output, errors = outcome("run.jsonl", "-o", "run.svg", *arguments)
+    assert (code, output) == (2, "")
+    assert errors.startswith(f"error: {error}")
+    assert not Path("run.svg").exists()
