@@ -162,7 +162,7 @@ async def test_a_thousand_agents_are_listed_without_lag() -> None:
         await page.wait_for("document.querySelector('.item b').innerText.startsWith('agent99')")
         await page.press("ArrowDown")
         await page.press("End")
-        await page.wait_for("document.querySelector('.mind-head h3').innerText === 'agent999'")
+        await page.wait_for("document.querySelector('.mind-head h2').innerText === 'agent999'")
         slowest = await page.evaluate(
             "new Promise((done) => { const times = []; let last = performance.now(); const tick = (now) => {"
             "times.push(now - last); last = now; if (times.length > 30) done(times.slice(1).sort((a, b) => a - b)[15]);"

@@ -41,7 +41,7 @@ async def test_a_divider_is_dragged_remembered_and_reset() -> None:
         dragged = await size(page, "#right", "width")
         assert dragged == pytest.approx(wide + 200, abs=15)
         await page.evaluate("window.isOld = true; location.reload()")
-        await page.wait_for(f"!window.isOld && document.querySelector('{RIGHT}')?.ariaValueNow")
+        await page.wait_for(f"!window.isOld && document.querySelector('{RIGHT}')?.checkVisibility()")
         assert await size(page, "#right", "width") == pytest.approx(dragged, abs=2)
         await page.evaluate(f"document.querySelector('{RIGHT}').dispatchEvent(new MouseEvent('dblclick'))")
         assert await size(page, "#right", "width") == pytest.approx(wide, abs=1)
@@ -72,3 +72,78 @@ async def test_panes_keep_a_least_size() -> None:
         assert await size(page, "#left", "width") > 100
         await page.press("End")
         assert await size(page, "#right", "width") > 100
+
+
+@needs_chromium
+async def test_values_wrap_at_their_separators() -> None:
+    async with replayed(recording()) as page:
+        await page.resize(1000, 800)
+        await page.wait_for("document.querySelector('.beliefs code')?.getClientRects().length > 1")
+        broken = await page.evaluate(
+            "[...document.querySelector('.beliefs code').childNodes].filter((part) => part.nodeType === Node.TEXT_NODE)"
+            ".filter((part) => { const range = document.createRange(); range.selectNode(part);"
+            " return range.getClientRects().length !== 1; }).map((part) => part.data)"
+        )
+        assert broken == []
+        assert await page.text(".beliefs code") == LONG
+
+
+@needs_chromium
+@pytest.mark.parametrize("width", [1440, 1280, 390])
+async def test_seven_tabs_fit_in_one_row(width: int) -> None:
+    async with replayed(recording()) as page:
+        await page.resize(width, 800, mobile=width < 500)
+        await page.wait_for(f"innerWidth === {width}")
+        tops, room, needed = await page.evaluate(
+            "(() => { const tabs = [...document.querySelectorAll('.tab')], list = document.querySelector('#tabs');"
+            " for (const each of tabs) each.hidden = false;"
+            " return [tabs.map((each) => each.getBoundingClientRect().top), list.clientWidth, list.scrollWidth]; })()"
+        )
+        assert len(tops) >= 7
+        assert len(set(tops)) == 1
+        assert needed <= room
+
+
+@needs_chromium
+async def test_names_of_robots_do_not_overlap() -> None:
+    crowd = [(f"robot_{n}", 0.25 * n) for n in range(12)]
+    async with replayed(recording(crowd)) as page:
+        await page.evaluate(
+            "window.named = new Map(); const draw = CanvasRenderingContext2D.prototype.fillText;"
+            "CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {"
+            " named.set(text, [x, y, this.measureText(text).width]); draw.call(this, text, x, y); }"
+        )
+        await page.press("ArrowRight")
+        await page.wait_for("window.named.size > 0")
+        texts = await page.evaluate("[...named.keys()]")
+        boxes = await page.evaluate("[...named.values()]")
+        assert len(boxes) > 6, texts
+        for n, (x, y, width) in enumerate(boxes):
+            for other_x, other_y, other_width in boxes[:n]:
+                assert abs(x - other_x) >= (width + other_width) / 2 or abs(y - other_y) >= 12
+        assert any(text.isdigit() for text in texts), "where there is no room, the number"
+
+
+@needs_chromium
+async def test_a_phone_shows_the_agents_above_the_fold_and_has_room_for_fingers() -> None:
+    async with replayed(recording()) as page:
+        await page.resize(390, 844, mobile=True)
+        await page.wait_for("innerWidth === 390")
+        fold = await size(page, "#timeline", "top")
+        assert await size(page, ".section > summary", "bottom") < fold
+        low = await page.evaluate(
+            "[...document.querySelectorAll('#tabs .tab, #play, #theme, #help, select, .section > summary')]"
+            ".filter((each) => each.checkVisibility() && each.getBoundingClientRect().height < 40)"
+            ".map((each) => each.outerHTML)"
+        )
+        assert low == []
+
+
+@needs_chromium
+async def test_a_question_mark_lists_the_keys() -> None:
+    async with replayed(recording()) as page:
+        await page.press("?")
+        await page.wait_for("document.querySelector('#keys').open")
+        assert "play or pause" in await page.text("#keys")
+        await page.press("Escape")
+        await page.wait_for("!document.querySelector('#keys').open")

@@ -14,7 +14,7 @@ export class AgentsView {
     this.chosen = null;
     this.picker = new Picker("agents", (row, item) => this.fillRow(row, item), ({ name }) => context.selection.choose({ agent: name }));
     this.picker.onSearch = () => this.show(this.t);
-    this.name = element("h3");
+    this.name = element("h2");
     this.about = element("span", "about");
     this.robots = element("span", "robots-used");
     this.console = new Console(context);

@@ -15,7 +15,7 @@ export class ArtifactsView {
     Object.assign(this, { root, context, environment });
     this.picker = new Picker("artifacts", (row, item) => this.fillRow(row, item), ({ path }) => context.selection.choose({ artifact: path }));
     this.picker.onSearch = () => this.show(this.t);
-    this.name = element("h3");
+    this.name = element("h2");
     this.about = element("span", "about");
     this.field = element("input", "entry");
     Object.assign(this.field, { type: "text", spellcheck: false, placeholder: "an operation, such as stop" });

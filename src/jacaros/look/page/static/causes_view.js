@@ -32,12 +32,12 @@ export class CausesView {
   story(link, t) {
     const chain = this.causes.chain(link.id), forward = this.causes.forward(link.id, t);
     const back = button("plain back", () => this.context.selection.choose({ ...this.context.selection.current, cause: undefined }), "← Recent activity");
-    const nodes = [keyed("back", back), element("h3", "asked", linkWords(link, this.minds, t)), this.place(link, "asked")];
+    const nodes = [keyed("back", back), element("h2", "asked", linkWords(link, this.minds, t)), this.place(link, "asked")];
     if (link.kind === "event") nodes.push(...this.decision(link));
-    nodes.push(element("h4", "", "Because of"));
+    nodes.push(element("h3", "", "Because of"));
     if (chain.length > 1) nodes.push(element("ol", "chain", ...chain.slice(1).map((each) => this.item(each, t))));
     else nodes.push(element("p", "empty", link.parent ? "The cause was not recorded." : "Nothing before it: the chain begins here."));
-    nodes.push(element("h4", "", "Led to"));
+    nodes.push(element("h3", "", "Led to"));
     if (forward.length) nodes.push(element("ol", "effects", ...commandsJoined(forward).map((each) => this.item(each.link, t, each))));
     else nodes.push(element("p", "empty", "Nothing has happened yet."));
     nodes.push(...this.beliefs(link));
@@ -66,7 +66,7 @@ export class CausesView {
     }
     for (const id of untried) lines.push(this.candidate(plan(id), "untried", "not tried: an earlier plan was applicable", id));
     if (!lines.length) return [element("p", "empty", "No plan is relevant for this event.")];
-    return [element("h4", "", chosen === null ? "Why no plan" : "Why this plan"), element("ol", "candidates", ...lines)];
+    return [element("h3", "", chosen === null ? "Why no plan" : "Why this plan"), element("ol", "candidates", ...lines)];
   }
 
   candidate(plan, kind, words, id) {
@@ -77,7 +77,7 @@ export class CausesView {
 
   beliefs({ beliefs = [] }) {
     if (!beliefs.length) return [];
-    return [element("h4", "", "Changed beliefs"), element("ul", "changed", ...beliefs.map(({ op, belief, agent }) => element("li", "", `${agent}: `, element("code", "", `${op}${belief}`))))];
+    return [element("h3", "", "Changed beliefs"), element("ul", "changed", ...beliefs.map(({ op, belief, agent }) => element("li", "", `${agent}: `, element("code", "", `${op}${belief}`))))];
   }
 
   item(link, t, { depth = 0, more = 0, until = 0 } = {}) {
@@ -98,7 +98,7 @@ export class CausesView {
   /** The last links of what is selected, or of the run. */
   lately(selected, t) {
     const fits = this.filter(selected, t), found = this.causes.last(t, LATELY, onceForEach(fits));
-    const title = element("h3", "asked", selected.agent ? `Recent activity of ${selected.agent}` : selected.robot ? `Recent activity of ${selected.robot}` : "Recent activity");
+    const title = element("h2", "asked", selected.agent ? `Recent activity of ${selected.agent}` : selected.robot ? `Recent activity of ${selected.robot}` : "Recent activity");
     if (!found.length) return [title, element("p", "empty", "Nothing has happened yet.")];
     return [title, element("p", "empty", "Select a line to see its causes and effects."), element("ol", "effects", ...found.map((each) => this.item(each, t)))];
   }

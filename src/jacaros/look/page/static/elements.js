@@ -1,9 +1,15 @@
-/** Make an element; `children` are elements or texts. */
+/** Make an element; `children` are elements or texts. The text of a `code` may wrap after its separators. */
 export function element(tag, className = "", ...children) {
   const made = document.createElement(tag);
   if (className) made.className = className;
-  made.append(...children);
+  made.append(...(tag === "code" ? children.flatMap(breakable) : children));
   return made;
+}
+
+/** A text with a place to wrap after each `/`, `_`, `,` or `(`, so that no word is cut; other things as they are. */
+export function breakable(text) {
+  if (typeof text !== "string") return [text];
+  return text.split(/(?<=[/_,(](?=\w|"))/).flatMap((part, n) => (n ? [document.createElement("wbr"), part] : [part]));
 }
 
 /** Make a button that calls `act` when it is pressed. */

@@ -10,7 +10,7 @@ const STATES = { self: "this system", joined: "joined", lost: "does not answer" 
 export class FleetView {
   constructor(root, context, fleet) {
     Object.assign(this, { root, context, fleet });
-    this.summary = element("h3");
+    this.summary = element("h2");
     this.list = element("ul", "members");
     root.append(this.summary, this.list);
   }

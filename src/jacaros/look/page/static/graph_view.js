@@ -1,19 +1,20 @@
-import { element, setText } from "./elements.js";
+import { breakable, element, setText } from "./elements.js";
 import { refill } from "./refill.js";
 
 /** The ROS graph around the node of the run: topics, who is at them, and the rates of ours. */
 export class GraphView {
   constructor(root, context, environment) {
     Object.assign(this, { root, environment });
-    this.node = element("h3");
+    this.node = element("h2");
     this.filter = element("input", "search");
     Object.assign(this.filter, { type: "search", placeholder: "Find topics", spellcheck: false });
     this.filter.setAttribute("aria-label", "Find topics by name or type");
     this.filter.addEventListener("input", () => context.time.notify());
     this.table = element("table", "topics");
     this.body = element("tbody");
-    const head = ["Topic", "Rate", "Publishers", "Subscribers"].map((title) => {
-      const cell = element("th", "", title);
+    const head = [["Topic"], ["Rate"], ["Pub", "Publishers"], ["Sub", "Subscribers"]].map(([short, title = ""]) => {
+      const cell = element("th", "", short);
+      cell.title = title;
       cell.scope = "col";
       return cell;
     });
@@ -36,7 +37,7 @@ export class GraphView {
 
 function row({ name, type, publishers, subscribers, ours, rate }) {
   const ways = { in: "→ in", out: "← out" }[ours];
-  const title = element("td", "", element("code", "", name), element("span", "type", type));
+  const title = element("td", "", element("code", "", name), element("span", "type", ...breakable(type)));
   const made = element("tr", ours ? "ours" : "", title, element("td", "rate", ours ? `${rate} Hz ` : "", element("span", "way", ways ?? "")),
     element("td", "", String(publishers)), element("td", "", String(subscribers)));
   return made;

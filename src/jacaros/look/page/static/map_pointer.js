@@ -4,7 +4,7 @@ const WHEEL = 0.0015;  // how much a turn of the wheel enlarges
 /**
  * The pointer on the map: a click chooses, a drag moves the map, or a robot that may be moved; the wheel enlarges.
  *
- * The owner has `find(x, y)`, `canDrag(found)`, `click(x, y)`, `dragTo(found, x, y)`, `drop(found, x, y)`, `camera`
+ * The owner has `find(x, y)`, `hover(found)`, `canDrag(found)`, `click(x, y)`, `dragTo(found, x, y)`, `drop(found, x, y)`, `camera`
  * and `redraw()`.
  */
 export class MapPointer {
@@ -14,6 +14,7 @@ export class MapPointer {
     canvas.addEventListener("pointermove", (event) => this.move(event));
     canvas.addEventListener("pointerup", (event) => this.release(event));
     canvas.addEventListener("pointercancel", () => this.cancel());
+    canvas.addEventListener("pointerleave", () => owner.hover(null));
     canvas.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
   }
 
@@ -26,7 +27,7 @@ export class MapPointer {
 
   move({ offsetX: x, offsetY: y }) {
     const { start, owner } = this;
-    if (!start) return;
+    if (!start) { owner.hover(owner.find(x, y)); return; }
     start.moved ||= Math.hypot(x - start.x, y - start.y) > STILL;
     if (!start.moved) return;
     if (start.dragged) owner.dragTo(start.dragged, x, y);

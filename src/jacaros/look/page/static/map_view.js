@@ -1,8 +1,9 @@
 import { FloorDrawing } from "./floor_drawing.js";
 import { decimals, button, element } from "./elements.js";
+import { MapNames } from "./map_names.js";
 import { MapPointer } from "./map_pointer.js";
 import { Camera, Projection } from "./projection.js";
-import { drawBelieved, drawLaser, drawPlan, drawRobot } from "./robot_drawing.js";
+import { drawBelieved, drawLaser, drawPlan, drawRobot, sizeOf } from "./robot_drawing.js";
 import { drawDirt, drawDoors, drawObjects, drawObstacles, drawPeople } from "./thing_drawing.js";
 import { TrailDrawing } from "./trail_drawing.js";
 
@@ -20,6 +21,7 @@ export class MapView {
     this.pen = this.canvas.getContext("2d");
     this.floor = new FloorDrawing();
     this.trails = new TrailDrawing(world);
+    this.names = new MapNames();
     root.append(this.canvas, this.makeLegend());
     new MapPointer(this.canvas, this);
     this.key = "";
@@ -110,9 +112,21 @@ export class MapView {
     drawPeople(pen, projection, world, t);
     this.eachRobot(states, (robot, state, index) => drawBelieved(pen, projection, robot, world.belief(robot.name, t), state, index));
     this.eachRobot(states, (robot, state, index) => drawRobot(pen, projection, robot, state, {
-      index, named: states.length > 1, selected: this.isSelected(robot.name, t),
+      index, selected: this.isSelected(robot.name, t),
     }));
+    this.drawNames(states, t);
     this.drawDragged(states);
+  }
+
+  /** Draw the names of all robots; the only one is named while it is selected. */
+  drawNames(states, t) {
+    const named = [], { projection } = this;
+    this.eachRobot(states, (robot, state) => {
+      const matters = robot.name === this.hovered || this.isSelected(robot.name, t);
+      const size = sizeOf(robot, projection) + 4;
+      if (matters || states.length > 1) named.push({ name: robot.name, x: projection.x(state.x), y: projection.y(state.y), size, matters });
+    });
+    this.names.draw(this.pen, named, projection);
   }
 
   /** Draw the robot that the pointer holds where it would be put down. */
@@ -143,6 +157,13 @@ export class MapView {
     const open = doors.map((door) => `door ${door.name} ${this.world.doorOpen(door, t) ? "open" : "closed"}`);
     const text = `Map${name ? ` of ${name}` : ""}: ${[...robots.slice(0, 20), ...open].join("; ") || "no robots"}`;
     if (this.canvas.getAttribute("aria-label") !== text) this.canvas.setAttribute("aria-label", text);
+  }
+
+  /** Name the robot below the pointer, even where names have no room. */
+  hover(found) {
+    if (found?.robot === this.hovered) return;
+    this.hovered = found?.robot;
+    this.redraw();
   }
 
   canDrag(found) { return found.robot !== undefined && this.tools.canMove(); }

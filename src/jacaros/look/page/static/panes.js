@@ -26,8 +26,8 @@ export class Divider {
   /** Hide the bar unless both panes are shown; otherwise bring back the division that you chose. */
   show() {
     const isUseful = this.before.checkVisibility() && this.after.checkVisibility(), across = this.isAcross;
-    this.bar.hidden = !isUseful;
-    if (across !== this.across) {
+    if (isUseful === this.bar.hidden || across !== this.across) {
+      this.bar.hidden = !isUseful;
       this.across = across;
       this.bar.setAttribute("aria-orientation", across ? "vertical" : "horizontal");
       this.apply(recall(this.key));

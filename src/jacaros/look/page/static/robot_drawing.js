@@ -3,12 +3,14 @@ import { robotColor } from "./palette.js";
 
 const FULL = 2 * Math.PI;
 
+/** Pixels from the middle of a robot to its outline. */
+export function sizeOf(robot, projection) { return Math.max(7, robot.radius * projection.scale); }
+
 /** A robot: body with its heading, the ring of its battery while it charges, a halo when it is selected. */
-export function drawRobot(pen, projection, robot, state, { index, named, selected }) {
-  const size = Math.max(7, robot.radius * projection.scale), colour = robotColor(index);
-  const x = projection.x(state.x), y = projection.y(state.y);
+export function drawRobot(pen, projection, robot, state, { index, selected }) {
+  const size = sizeOf(robot, projection), colour = robotColor(index);
   pen.save();
-  pen.translate(x, y);
+  pen.translate(projection.x(state.x), projection.y(state.y));
   if (selected) drawHalo(pen, size + 7, colour);
   if (state.charging) drawCharge(pen, size + 6, state.battery);
   if (state.touching) drawTouch(pen, size + 4);
@@ -18,13 +20,12 @@ export function drawRobot(pen, projection, robot, state, { index, named, selecte
   pen.fill(); pen.stroke();
   drawHeading(pen, size, colour);
   pen.restore();
-  if (named || selected) drawName(pen, robot.name, x, y - size - 9);
 }
 
 /** Where localisation believes the robot to be, as a dashed outline; nothing where it is right. */
 export function drawBelieved(pen, projection, robot, believed, state, index) {
   if (!believed || Math.hypot(believed.x - state.x, believed.y - state.y) * projection.scale < 2) return;
-  const size = Math.max(7, robot.radius * projection.scale);
+  const size = sizeOf(robot, projection);
   pen.save();
   pen.translate(projection.x(believed.x), projection.y(believed.y));
   pen.rotate(-believed.yaw);

@@ -15,6 +15,9 @@ export class Tabs {
     this.panels = panels.map(([panel, view]) => ({ panel, view, show: paced((t) => view.show(t)), tab: this.makeTab(panel) }));
     this.chosen = recall("tab");
     list.addEventListener("keydown", (event) => this.press(event));
+    list.addEventListener("scroll", () => this.showEdges());
+    list.addEventListener("wheel", ({ deltaY }) => { list.scrollLeft += deltaY; }, { passive: true });
+    new ResizeObserver(() => this.reveal()).observe(list);
   }
 
   makeTab(panel) {
@@ -44,13 +47,34 @@ export class Tabs {
   arrange() {
     const available = this.available;
     const open = available.find(({ panel }) => panel.id === this.chosen) ?? available[0];
+    const tabs = `${open?.panel.id}: ${available.map(({ panel }) => panel.id)}`;
     for (const each of this.panels) {
       each.tab.hidden = !available.includes(each);
       each.panel.hidden = each !== open;
       each.tab.tabIndex = each === open ? 0 : -1;
       each.tab.setAttribute("aria-selected", String(each === open));
     }
+    if (tabs !== this.arranged) {
+      this.arranged = tabs;
+      this.reveal();
+    }
     return open;
+  }
+
+  /** Scroll the row of tabs, if it is longer than its room, so that the open one is seen. */
+  reveal() {
+    const tab = this.list.querySelector("[aria-selected=true]"), { list } = this;
+    if (!tab) return;
+    const box = tab.getBoundingClientRect(), room = list.getBoundingClientRect();
+    if (box.left < room.left || box.right > room.right) list.scrollLeft += box.left - room.left - (room.width - box.width) / 2;
+    this.showEdges();
+  }
+
+  /** Fade the row of tabs at the sides where there are more of them. */
+  showEdges() {
+    const { scrollLeft, clientWidth, scrollWidth, classList } = this.list;
+    classList.toggle("more-before", scrollLeft > 1);
+    classList.toggle("more-after", scrollLeft + clientWidth < scrollWidth - 1);
   }
 
   show(t) { this.arrange()?.show(t); }

@@ -37,10 +37,9 @@ export class TimelineView {
     for (const speed of SPEEDS) this.speed.append(new Option(speed === 0.5 ? "½×" : `${speed}×`, String(speed)));
     this.speedLabel = element("label", "speed", "Speed ", this.speed);
     this.legend = element("ul", "legend");
-    this.keys = element("span", "keys", ...keys());
     const track = element("div", "track", this.marks, this.slider, this.tip);
     this.root.append(this.play, this.onAir, element("div", "clock", this.now, " ", this.end), track, this.live, this.speedLabel,
-      element("div", "below", this.legend, this.keys));
+      this.legend);
   }
 
   listen() {
@@ -144,9 +143,4 @@ function grouped(marks, scale) {
     }
   }
   return groups;
-}
-
-function keys() {
-  const key = (text) => element("kbd", "", text);
-  return [key("space"), " play ", key("←"), " ", key("→"), " 1 s ", key("shift"), " 10 s"];
 }
