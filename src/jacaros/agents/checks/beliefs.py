@@ -1,200 +1,51 @@
-"""Collect the beliefs that a program asks for, and the text in it that may add them.
+"""Findings about beliefs: names, numbers of arguments and values that nothing gives them.
 
+>>> from jacaros.agents.checks.flow import Flow, flow_of
 >>> from jacaros.agents.language.loader import load_program
->>> found = beliefs_of(load_program("robot.asl", "at(home). +!go : near(X) <- +at(X).")[0], {})
->>> found.made, list(found.asked)
-({'at'}, ['near'])
+>>> program, _ = load_program("robot.asl", 'mode("idle"). +!go : mode(idle).')
+>>> flow = flow_of(program, {})
+>>> [each.message for each in mismatches(flow, Flow([flow]).adders(flow))]
+['`mode(idle)` never matches: `idle` is an atom, but the only value of `mode/1` is the string `"idle"`']
 >>> is_misspelt("batery", "battery"), is_misspelt("room1", "room2")
 (True, False)
 """
 
-import re
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from math import pi
 from typing import Final
 
-from jacaros.agents.checks.formulas import clauses, in_order
+from jacaros.agents.checks.flow import (
+    Adder,
+    ProgramFlow,
+    Reader,
+    Value,
+    is_own,
+    key_of,
+    place_of,
+    value_of,
+    variables_of,
+)
 from jacaros.agents.language import nodes
 from jacaros.agents.language.cursor import is_slip_of
+from jacaros.agents.language.diagnostics import Diagnostic, problem
 from jacaros.agents.language.lowering import format_term
-from jacaros.agents.language.nodes import UNDECLARED, Declaration, parts_of, walk
+from jacaros.agents.language.nodes import nodes_in
+from jacaros.runtime.files.texts import did_you_mean
 
-_WORD: Final = re.compile(r"\w+")
+MISMATCH: Final = "never-matches"
+UNIT: Final = "wrong-unit"
+
 _SHORTEST: Final = 5
 """Names shorter than this are too easily similar."""
 _SHORTEST_PART: Final = 3
 """Parts of names between underscores that are shorter than this are too easily similar."""
 _ENDINGS: Final = "sdr"
 """Letters that make another form of a word."""
+_MOST_OPTIONS: Final = 4
+"""Number of values that are listed."""
 
 
-Key = tuple[str, int]
-"""Name and number of arguments."""
-
-
-@dataclass
-class Beliefs:
-    """The names of beliefs in a program.
-
-    Attributes:
-        asked: beliefs that plans react to and conditions ask for, by name.
-        made_as: beliefs that the program gives itself and others.
-        mentioned: all other names in it, and words of strings: they may become beliefs in ways that are not visible.
-        is_open: beliefs, plans or agents come from elsewhere at run time.
-        events: events that plans and ``.wait`` react to, sign and belief; default namespace only, without strong negation.
-        concluded, mentioned_as: the conclusions of rules; as `mentioned`, without words.
-        said: words of strings that are not only printed.
-        facts: initial beliefs, by name.
-        noted: beliefs that the agent itself adds: initial ones, and those of steps without a source annotation.
-        brought: beliefs that come in other ways: from messages, with a source annotation, from plans for tests, or in
-            ways that are not visible, because they appear in other terms.
-    """
-
-    asked: dict[str, list[nodes.Literal]] = field(default_factory=dict)
-    mentioned: set[str] = field(default_factory=set)
-    is_open: bool = False
-    events: dict[Key, list[tuple[str, nodes.Literal]]] = field(default_factory=dict)
-    made_as: set[Key] = field(default_factory=set)
-    concluded: dict[Key, nodes.Rule] = field(default_factory=dict)
-    mentioned_as: set[Key] = field(default_factory=set)
-    said: set[str] = field(default_factory=set)
-    facts: dict[str, list[nodes.Literal]] = field(default_factory=dict)
-    noted: set[Key] = field(default_factory=set)
-    brought: set[Key] = field(default_factory=set)
-
-    @property
-    def made(self) -> set[str]:
-        """Names that the program gives to its own beliefs and to those of others."""
-        return {name for name, _ in (*self.made_as, *self.concluded)}
-
-
-def beliefs_of(program: nodes.Program, actions: Mapping[str, Declaration]) -> Beliefs:
-    """Collect the beliefs of a program and its includes; *actions* are the internal actions by name."""
-    found = Beliefs()
-    heads: set[int] = set()
-    for belief in program.beliefs:
-        head = belief.head if isinstance(belief, nodes.Rule) else belief
-        heads.add(id(head))
-        if isinstance(belief, nodes.Rule):
-            found.concluded.setdefault(key_of(belief.head), belief)
-        else:
-            found.made_as.update(_keys(belief))
-            found.facts.setdefault(_name(belief), []).append(belief)
-            _note(belief, found)
-    asked: set[int] = set()
-    for clause in (*clauses(program), *program.goals):
-        for node, is_asked in in_order(clause):
-            if isinstance(node, nodes.InternalAction):
-                _look_at_call(node, actions.get(node.name, UNDECLARED), asked, found)
-            else:
-                _look_at(node, is_asked, asked, found)
-    for plan in program.plans:
-        _react(plan, found)
-    printed: set[int] = set()
-    noted = _notes(program)
-    for node in walk(program.beliefs, program.goals, program.plans):
-        if isinstance(node, nodes.InternalAction) and actions.get(node.name, UNDECLARED).prints:
-            printed.update(map(id, walk(node.arguments)))
-        elif isinstance(node, nodes.Literal) and id(node) not in asked:
-            found.mentioned.add(_name(node))
-            if id(node) not in heads and id(node) not in printed:
-                found.mentioned_as.add(key_of(node))
-                if id(node) not in noted:
-                    found.brought.add(key_of(node))
-        elif isinstance(node, nodes.String):
-            words = _WORD.findall(node.value)
-            found.mentioned.update(words)
-            if id(node) not in printed:
-                found.said.update(words)
-    return found
-
-
-def _react(plan: nodes.Plan, found: Beliefs) -> None:
-    """Note the belief events that trigger a plan and its sub-plans."""
-    if plan.trigger.kind == "" and plan.trigger.operator in "+-":
-        _note_event(plan.trigger.operator, plan.trigger.literal, found)
-    for inner in plan.subplans:
-        _react(inner, found)
-
-
-def _note_event(sign: str, literal: nodes.Node, found: Beliefs) -> None:
-    if isinstance(literal, nodes.Literal) and literal.namespace is None and not literal.negated:
-        found.events.setdefault(key_of(literal), []).append((sign, literal))
-
-
-def _awaited(wait: nodes.InternalAction) -> Iterator[nodes.BeliefChange]:
-    """Yield the event ``{+b}`` or ``{-b}`` that a ``.wait`` waits for: it parses as a belief change."""
-    for argument in wait.arguments:
-        if isinstance(argument, nodes.BodyTerm):
-            yield from (step for step in argument.body.steps if isinstance(step, nodes.BeliefChange))
-
-
-def _look_at(node: nodes.Node, is_asked: bool, asked: set[int], found: Beliefs) -> None:
-    if isinstance(node, nodes.Trigger):
-        if node.kind == "" and node.operator in "+-":
-            _ask(node.literal, asked, found)
-        elif node.kind == "?":
-            _make(node.literal, found)
-            found.brought.update(_keys(node.literal))
-    elif isinstance(node, nodes.BeliefChange):
-        if id(node) in asked:
-            return
-        found.is_open = found.is_open or isinstance(node.operand, nodes.Variable)
-        if isinstance(node.operand, nodes.Literal) and "+" in node.operator:
-            _make(node.operand, found)
-            _note(node.operand, found)
-    elif is_asked:
-        _ask(node, asked, found)
-
-
-def _look_at_call(node: nodes.InternalAction, action: Declaration, asked: set[int], found: Beliefs) -> None:
-    if action.awaits:
-        for change in _awaited(node):
-            asked.add(id(change))
-            _ask(change.operand, asked, found)
-            _note_event(change.operator, change.operand, found)
-    found.is_open = found.is_open or action.brings_in
-    if action.performative is not None and node.arguments:
-        _make(node.arguments[-1], found)
-        found.brought.update(_keys(node.arguments[-1]))
-    if action.condition is not None:
-        for condition in node.arguments[action.condition :][:1]:
-            for part in parts_of(condition):
-                _ask(part, asked, found)
-
-
-def _ask(node: nodes.Node, asked: set[int], found: Beliefs) -> None:
-    """Note a literal that is asked for; beliefs of other namespaces may come from anywhere."""
-    if isinstance(node, nodes.Literal) and node.namespace is None:
-        asked.add(id(node))
-        found.asked.setdefault(_name(node), []).append(node)
-
-
-def _make(term: nodes.Node, found: Beliefs) -> None:
-    """Note a belief that is added, or a list of them."""
-    found.made_as.update(_keys(term))
-
-
-def _notes(program: nodes.Program) -> set[int]:
-    """Return the literals that steps add or delete."""
-    steps = walk(program.plans)
-    return {id(step.operand) for step in steps if isinstance(step, nodes.BeliefChange)}
-
-
-def _note(belief: nodes.Literal, found: Beliefs) -> None:
-    """Note a belief whose source is the agent itself, unless its annotations may name another one."""
-    (found.noted if belief.annotations is None else found.brought).add(key_of(belief))
-
-
-def source_of(literal: nodes.Literal) -> str:
-    """Return the source that a literal asks for, such as ``percept``; empty if it asks for any."""
-    items = literal.annotations.items if literal.annotations is not None else ()
-    for each in items:
-        if isinstance(each, nodes.Literal) and each.functor == "source" and len(each.arguments) == 1:
-            source = each.arguments[0]
-            if isinstance(source, nodes.Literal) and not source.arguments:
-                return _name(source)
-    return ""
+# Names.
 
 
 def is_fact_of(asked: nodes.Literal, fact: nodes.Literal) -> bool:
@@ -210,21 +61,6 @@ def is_fact_of(asked: nodes.Literal, fact: nodes.Literal) -> bool:
         if not isinstance(one, nodes.Variable)
     ]
     return bool(pairs) and all(one == other for one, other in pairs)
-
-
-def _keys(term: nodes.Node) -> Iterator[Key]:
-    for node in term.items if isinstance(term, nodes.ListTerm) else (term,):
-        if isinstance(node, nodes.Literal):
-            yield key_of(node)
-
-
-def key_of(literal: nodes.Literal) -> Key:
-    """Name and number of arguments of a belief."""
-    return _name(literal), len(literal.arguments)
-
-
-def _name(literal: nodes.Literal) -> str:
-    return literal.functor.strip("'")
 
 
 def is_misspelt(written: str, meant: str) -> bool:
@@ -246,3 +82,209 @@ def is_misspelt(written: str, meant: str) -> bool:
         for one, two in zip(parts, wanted, strict=True)
         if one != two
     )
+
+
+# Values.
+
+
+def mismatches(flow: ProgramFlow, adders: Mapping[str, Sequence[Adder]]) -> Iterator[Diagnostic]:
+    """Return warnings about beliefs that are asked for with values that nothing gives them.
+
+    Args:
+        flow: a program.
+        adders: all that can give its agent beliefs, by name.
+    """
+    clauses = {id(each.clause): each.clause for each in flow.readers if is_own(each.literal)}
+    for reader in flow.readers:
+        name, size = reader.key
+        if is_own(reader.literal):
+            same = [each for each in adders.get(name, ()) if each.size in (None, size)]
+            yield from _mismatch(reader, same)
+    for clause in clauses.values():
+        yield from _comparisons(clause, variables_of(clause, adders))
+
+
+def _mismatch(reader: Reader, same: Sequence[Adder]) -> Iterator[Diagnostic]:
+    literal = reader.literal
+    for place, argument in enumerate(literal.arguments if same else ()):
+        wanted = value_of(argument, {})
+        given = [place_of(each, place) for each in same]
+        if wanted.kind and not any(each.fits(wanted) for each in given):
+            kinds = {each.kind for each in given}
+            if wanted.kind in kinds and (reader.denied or reader.how == "deletion"):
+                continue
+            has = _described(given, literal, place)
+            is_ = (
+                f"`{format_term(argument)}` is {_KINDS[wanted.kind]}, but "
+                if wanted.kind not in kinds
+                else ""
+            )
+            message = f"`{format_term(literal)}` never matches: {is_}{has}"
+            yield problem(MISMATCH, message, argument.span or literal.span, _help(literal, same, place))
+            return
+
+
+_KINDS: Final = {
+    "number": "a number",
+    "string": "a string",
+    "atom": "an atom",
+    "list": "a list",
+    "structure": "a structure",
+}
+
+
+def _described(given: Sequence[Value], literal: nodes.Literal, place: int) -> str:
+    """Describe the values that an argument has."""
+    name, size = key_of(literal)
+    of = f"`{name}/{size}`" if size == 1 else f"argument {place + 1} of `{name}/{size}`"
+    options = list(dict.fromkeys(option for each in given for option in each.options))
+    if all(each.options for each in given) and len(options) <= _MOST_OPTIONS:
+        kinds = {each.kind for each in given}
+        word = f"the {kinds.pop()} " if len(kinds) == 1 == len(options) else ""
+        are = "values of {} are" if len(options) > 1 else "value of {} is"
+        return f"the only {are.format(of)} {word}{', '.join(f'`{each}`' for each in options)}"
+    words = dict.fromkeys(_KINDS[each.kind] + (f" in {each.unit}" if each.unit else "") for each in given)
+    return f"{of} has {' or '.join(words)}"
+
+
+def _help(literal: nodes.Literal, same: Sequence[Adder], place: int) -> str:
+    wanted = literal.arguments[place]
+    options = list(dict.fromkeys(option for each in same for option in place_of(each, place).options))
+    if isinstance(wanted, nodes.Literal) and any(
+        place_of(each, place).kind == "number" and not place_of(each, place).options for each in same
+    ):
+        return f"begin variables with a capital letter: `{format_term(_with_variables(literal, same))}`"
+    return did_you_mean(_written(literal, place, option) for option in options[:_MOST_OPTIONS])
+
+
+def _written(literal: nodes.Literal, place: int, option: str) -> str:
+    """Write a literal with another argument."""
+    arguments = [format_term(each) for each in literal.arguments]
+    return f"{literal.functor}({', '.join([*arguments[:place], option, *arguments[place + 1 :]])})"
+
+
+def _with_variables(literal: nodes.Literal, same: Sequence[Adder]) -> nodes.Literal:
+    """Return a literal with a variable for each atom that never fits."""
+    arguments = [
+        nodes.Variable(argument.functor[:1].upper() + argument.functor[1:])
+        if isinstance(argument, nodes.Literal)
+        and not argument.arguments
+        and not any(place_of(each, place).fits(value_of(argument, {})) for each in same)
+        else argument
+        for place, argument in enumerate(literal.arguments)
+    ]
+    return nodes.replace(literal, arguments=tuple(arguments))
+
+
+# Comparisons and units.
+
+_FACTORS: Final = {
+    "radians": ("angle", 1.0),
+    "degrees": ("angle", pi / 180),
+    "metres": ("length", 1.0),
+    "centimetres": ("length", 0.01),
+    "millimetres": ("length", 0.001),
+    "seconds": ("time", 1.0),
+    "milliseconds": ("time", 0.001),
+    "minutes": ("time", 60.0),
+    "0 to 1": ("share", 1.0),
+    "percent": ("share", 0.01),
+}
+"""The units that may be mixed up: what they measure, and their sizes."""
+_TURN: Final = 10.0
+"""No comparison is with so many radians: that is more than a turn."""
+
+
+def _comparisons(clause: nodes.Node, variables: Mapping[str, Value]) -> Iterator[Diagnostic]:
+    for relation in nodes_in(nodes.Relation, clause) if variables else ():
+        for variable, other in (relation.operands, relation.operands[::-1]):
+            value = variables.get(variable.name) if isinstance(variable, nodes.Variable) else None
+            if value is None or not value.kind:
+                continue
+            wanted = value_of(other, {})
+            if wanted.kind and not value.fits(wanted) and wanted.kind != value.kind:
+                message = (
+                    f"`{format_term(relation)}` compares {_KINDS[value.kind]} with {_KINDS[wanted.kind]}"
+                )
+                yield problem(MISMATCH, message, relation.span, _in_kind(other, value))
+            elif isinstance(other, nodes.Number) and (unit := _unit_of(other.value, value)):
+                name, number = format_term(variable), format_term(other)
+                message = f"`{name}` is in {_named(value.unit)}, but `{number}` is in {_named(unit)}"
+                help = f"write `{_shown(converted(other.value, unit, value.unit))}`"
+                yield problem(UNIT, message, relation.span, help)
+
+
+def _in_kind(other: nodes.Node, value: Value) -> str | None:
+    """Return how a constant is written as a value of this kind."""
+    text = other.value if isinstance(other, nodes.String) else format_term(other)
+    if value.options and len(value.options) <= _MOST_OPTIONS:
+        return did_you_mean(value.options)
+    if value.kind == "string":
+        return did_you_mean([f'"{text}"'])
+    return did_you_mean([str(text)]) if value.kind == "atom" and isinstance(other, nodes.String) else None
+
+
+def _unit_of(number: float, value: Value) -> str:
+    """Return the unit that a number is in, if it certainly is not in that of the value."""
+    match value.unit:
+        case "percent" if value.whole and 0 < number < 1:
+            return "0 to 1"
+        case "0 to 1" if number > 1:
+            return "percent"
+        case "radians" if abs(number) >= _TURN:
+            return "degrees"
+        case "degrees" if not float(number).is_integer() and _is_part_of_pi(number):
+            return "radians"
+    return ""
+
+
+def _is_part_of_pi(number: float) -> bool:
+    eighths = number / (pi / 4)
+    return round(eighths) != 0 and abs(eighths - round(eighths)) < 0.005
+
+
+def converted(number: float, unit: str, wanted: str) -> float:
+    """Return a number in another unit of the same kind."""
+    return number * _FACTORS[unit][1] / _FACTORS[wanted][1]
+
+
+def _shown(number: float) -> str:
+    return f"{number:.6g}"
+
+
+def _named(unit: str) -> str:
+    return "the range 0 to 1" if unit == "0 to 1" else unit
+
+
+def mixed_units(
+    flow: ProgramFlow,
+    adders: Mapping[str, Sequence[Adder]],
+    parameters: Mapping[tuple[str, int], Sequence[str]],
+) -> Iterator[Diagnostic]:
+    """Return warnings about values that are passed to an operation in another unit than it expects.
+
+    Args:
+        flow: a program.
+        adders: all that can give its agent beliefs, by name.
+        parameters: the units of the parameters of operations; empty ones are not known.
+    """
+    clauses = {id(each.clause): each.clause for each in flow.readers if is_own(each.literal)}
+    for clause in clauses.values() if parameters else ():
+        variables = variables_of(clause, adders)
+        for step in nodes_in(nodes.ExternalAction, clause):
+            if isinstance(step.action, nodes.Literal):
+                yield from _mixed(step.action, variables, parameters.get(key_of(step.action), ()))
+
+
+def _mixed(
+    action: nodes.Literal, variables: Mapping[str, Value], wanted: Iterable[str]
+) -> Iterator[Diagnostic]:
+    for argument, unit in zip(action.arguments, wanted, strict=False):
+        value = variables.get(argument.name) if isinstance(argument, nodes.Variable) else None
+        if value is None or value.unit == unit or not {value.unit, unit} <= _FACTORS.keys():
+            continue
+        (kind, size), (other, other_size) = _FACTORS[value.unit], _FACTORS[unit]
+        if kind == other:
+            name = format_term(argument)
+            message = f"`{name}` is in {_named(value.unit)}, but `{action.functor}` expects {_named(unit)}"
+            yield problem(UNIT, message, argument.span, f"convert it: `{name} * {_shown(size / other_size)}`")

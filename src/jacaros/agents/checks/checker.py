@@ -39,11 +39,12 @@ from jacaros.agents.language.nodes import ByKind
 # p(X) :- q(Y).     // jacaros: ignore singleton-variable       for this line
 # // jacaros: ignore singleton-variable                         on its own line: for the next clause or line
 # // jacaros: ignore-file singleton-variable, missing-context   for the file
+# `allow` means the same as `ignore`.
 #
 # Errors cannot be switched off. Text after ``(`` is a comment for the reader.
 
 
-_ORDER: Final = re.compile(r"jacaros:\s*ignore(?P<file>-file)?\b(?P<codes>[^(\n]*)")
+_ORDER: Final = re.compile(r"jacaros:\s*(?:ignore|allow)(?P<file>-file)?\b(?P<codes>[^(\n]*)")
 _CODE: Final = re.compile(r"[A-Za-z][\w-]*")
 
 

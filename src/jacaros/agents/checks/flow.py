@@ -60,6 +60,8 @@ class Adder:
         size: number of arguments; None: any.
         values: what is known of them.
         literal: where a program says so.
+        rule: whose conclusion it is.
+        usage: a property or signal with names for its values.
     """
 
     how: str
@@ -67,6 +69,7 @@ class Adder:
     values: tuple[Value, ...] = ()
     literal: nodes.Literal | None = None
     rule: nodes.Rule | None = None
+    usage: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -261,6 +264,10 @@ def place_of(adder: Adder, place: int) -> Value:
     return adder.values[place] if place < len(adder.values) else UNKNOWN
 
 
+_SCOPES: Final = (nodes.Not, nodes.InternalAction, nodes.PlanTerm, nodes.RuleTerm, nodes.For, nodes.While)
+"""What binds variables only within, if at all."""
+
+
 def _given(clause: nodes.Node) -> Iterator[nodes.Literal]:
     """Yield the belief literals that give the variables of a clause their values."""
     stack: list[tuple[nodes.Node, bool]] = [(clause, False)]
@@ -274,7 +281,7 @@ def _given(clause: nodes.Node) -> Iterator[nodes.Literal]:
                 yield node
         elif isinstance(node, nodes.And | nodes.Or):
             stack += [(each, asked) for each in node.operands]
-        elif not isinstance(node, nodes.Not | nodes.InternalAction | nodes.PlanTerm | nodes.RuleTerm):
+        elif not isinstance(node, _SCOPES):
             asked_here = set(map(id, conditions(node)))
             stack += [(each, id(each) in asked_here) for each in children(node)]
 
@@ -398,6 +405,8 @@ class _Collector:
 
     def _literal(self, literal: nodes.Literal, at: _At) -> None:
         if at.asked and literal.namespace is None:
+            if literal.functor in ("true", "false") and not literal.arguments:
+                return
             self._read("condition", literal, denied=at.denied)
             at = _At(passed=False)
         elif at.passed:

@@ -173,11 +173,11 @@ _CODES: Final[dict[Severity, str]] = {
     "warning": """
         acting-condition capital-constant changed-variable comparison-without-value
         condition-as-step context-never-true event-never-happens java-function misspelt-annotation
-        misspelt-belief no-effect ordered-atom organisation-library plan-never-selected
-        plan-too-large singleton-variable too-many unknown-artifact-type unknown-code unknown-goal
+        misspelt-belief never-matches no-effect ordered-atom organisation-library plan-never-selected
+        plan-too-large singleton-variable too-many unknown-artifact-type unknown-belief unknown-code unknown-goal
         unknown-internal-action unknown-library unknown-message-type unknown-operation
         unknown-performative unknown-property unknown-resource wrong-arguments wrong-needs wrong-supervision
-        wrong-urgency
+        wrong-unit wrong-urgency
     """,
     "note": """
         narrow-handler not-imported quoted-atom short-wait

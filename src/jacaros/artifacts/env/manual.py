@@ -14,7 +14,7 @@ from jacaros.artifacts.kernel.declaration import DeclaredOperation, Signature
 # Properties and signals of an artifact type, read from its source and docstrings.
 
 
-_DEFINES = {"define_property": 0, "signal": 0, "signal_to": 1}
+_DEFINES = {"define_property": 0, "update_property": 0, "signal": 0, "signal_to": 1}
 """The methods that make something observable, and the index of the argument that names it."""
 
 Usages = dict[str, str]
@@ -37,6 +37,12 @@ def written_properties(artifact_type: type) -> Usages:
 def written_signals(artifact_type: type) -> Usages:
     """Return the signals that the code of the class sends by name, the most general class first."""
     return _written(artifact_type, ("signal", "signal_to"))
+
+
+def written_usages(artifact_type: type) -> Iterator[tuple[str, str]]:
+    """Yield name and usage of each property and signal where the code of the class defines, updates or sends it."""
+    for each in own_classes(artifact_type):
+        yield from _calls(each, tuple(_DEFINES))
 
 
 def _written(artifact_type: type, methods: tuple[str, ...]) -> Usages:

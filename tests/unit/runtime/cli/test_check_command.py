@@ -150,17 +150,30 @@ def test_the_programs_of_the_repository_have_no_problems(outcome: Outcome) -> No
 
 
 MEANT = {
+    "body_statements/control_statements_as_internal_actions": {"never-matches"},
+    "body_statements/if_without_else": {"unknown-belief"},
     "concurrency/fork_with_needs": {"short-wait"},
+    "failure/checked_goals": {"never-matches", "unknown-belief"},
+    "failure/error_code_annotation": {"unknown-belief"},
     "failure/goal_variable_failure_continues": {"context-never-true"},
     "failure/inapplicable_handler_drops_intention": {"context-never-true", "narrow-handler"},
+    "failure/test_goal_without_plan_no_handler": {"unknown-belief"},
     "failure/warning_inapplicable_handler": {"narrow-handler"},
+    "goal_conditions_and_subplans/failing_test_in_a_sub_plan": {"unknown-belief"},
+    "goal_conditions_and_subplans/handler_outside_the_scope": {"unknown-belief"},
+    "goal_conditions_and_subplans/handlers_of_nested_scopes": {"unknown-belief"},
+    "internal_actions/list_rules_of_one_predicate": {"unknown-belief"},
     "namespaces_and_includes/local_namespaces_of_included_files": {"unknown-goal"},
     "namespaces_and_includes/include_without_namespace": {"plan-never-selected"},
     "plan_selection/first_applicable_in_file_order": {"plan-never-selected"},
+    "plan_selection/labels_are_found": {"unknown-belief"},
     "plan_selection/priority_annotation_ignored": {"plan-never-selected"},
+    "rules_and_queries/precedence_of_and_or_not": {"unknown-belief"},
     "rules_and_queries/rules_raise_no_events": {"event-never-happens"},
     "rules_and_queries/waiting_is_no_condition": {"acting-condition"},
     "terms_and_printing/quoted_atoms_keep_quotes": {"quoted-atom"},
+    "time/wait_timeout_elapsed": {"unknown-belief"},
+    "unification/plans_are_taken_apart": {"unknown-belief"},
 }
 """Cases whose problems are their subject."""
 

@@ -16,7 +16,7 @@ from jacaros.agents.checks.annotations import needs_of
 from jacaros.agents.checks.formulas import clauses as clauses_of
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic
-from jacaros.agents.language.nodes import UNDECLARED, ByKind, walk
+from jacaros.agents.language.nodes import UNDECLARED, ByKind, nodes_in, walk
 from jacaros.agents.mind.actions.internal_action import STANDARD
 from jacaros.artifacts.env.arbiter import local_name, read_uses
 from jacaros.artifacts.env.environment import Environment
@@ -132,6 +132,15 @@ class _Offered:
             known += self._main.offers(artifact)
         same = [each for each in dict.fromkeys(known) if each.partition("/")[0] == name]
         return did_you_mean(same or close_matches(name, [each.partition("/")[0] for each in known])) or None
+
+
+def lacks_actions(programs: Sequence[nodes.Program], types: "Sequence[type[Artifact]] | None") -> bool:
+    """Return whether actions of programs may belong to artifacts other than of these types."""
+    if types is None or any(map(_is_open, programs)) or any(map(_offers_more, types)):
+        return True
+    offered = _Offered(types)
+    actions = (node.action for each in programs for node in nodes_in(nodes.ExternalAction, each.plans))
+    return any(list(offered.check(each)) for each in actions if isinstance(each, nodes.Literal))
 
 
 # ---- resources

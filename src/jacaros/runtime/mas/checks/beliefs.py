@@ -1,41 +1,42 @@
-"""Check for beliefs that programs use but that are never added: the name is misspelt, the arity differs, or the belief
-is the conclusion of a rule, which causes no event.
+"""Check what a project means by its beliefs: who adds those that programs use, with which arguments and values.
 
-Beliefs may come from anywhere: other programs, Python code, tests, users. So a name is reported only if the project
-certainly adds a similar one, and if it appears nowhere else.
+Beliefs may come from anywhere: other programs, Python code, tests, users. So a belief is reported only if the whole project
+is known, and if its name appears nowhere else. A misspelt name is reported more often: a similar belief is certainly added.
 """
 
 import inspect
 import os
 import re
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from jacaros.agents.checks.beliefs import Beliefs, beliefs_of, is_fact_of, is_misspelt, source_of
+from jacaros.agents.checks.beliefs import is_fact_of, is_misspelt, mismatches, mixed_units
+from jacaros.agents.checks.flow import Adder, Flow, Key, ProgramFlow, Reader, flow_of, is_own, source_of
 from jacaros.agents.language import nodes
 from jacaros.agents.language.cursor import is_slip_of
-from jacaros.agents.language.diagnostics import Diagnostic
+from jacaros.agents.language.diagnostics import Diagnostic, problem
 from jacaros.agents.language.lowering import format_term
 from jacaros.agents.language.nodes import parts_of
 from jacaros.agents.mind.actions.internal_action import STANDARD
-from jacaros.runtime.files.texts import did_you_mean, file_bytes
+from jacaros.runtime.files.texts import close_matches, did_you_mean, file_bytes
 
 if TYPE_CHECKING:
     from jacaros.artifacts.env.artifact import Artifact
 
-CODE: Final = "misspelt-belief"
+MISSPELT: Final = "misspelt-belief"
 NEVER: Final = "event-never-happens"
+UNKNOWN: Final = "unknown-belief"
 
 _TEXTS: Final = (".asl", ".py", ".mas2j", ".jcm", ".yaml", ".yml")
 """Kinds of files that may contain the name of a belief."""
 _WORD: Final = re.compile(r"\w+")
+_TELLS: Final = re.compile(r"\b(?:tell|tellHow|signal)\b")
+"""What a program of another project needs in order to give agents beliefs."""
 _MOST_FILES, _DEEPEST = 500, 4
 """A folder with more files is not a project, so nothing is certain there. Files in deeper folders are ignored."""
-_NAMES_ITSELF: Final = re.compile(r"\b(?:define_property|signal)\(\s*[^\s\"')]")
-"""Code that computes a name."""
 _OF_THE_SYSTEM: Final = frozenset(
     {"artifact", "childWsp", "connected", "current_wsp", "focused", "focusing", "joinedWsp", "linkedWsp"}
     | {"parentWsp", "provider", "workspace", "jag_awaking", "jag_shutting_down", "jag_sleeping"}
@@ -43,194 +44,276 @@ _OF_THE_SYSTEM: Final = frozenset(
 """Beliefs and events that may occur in every run."""
 
 
-def check_beliefs(
-    programs: Sequence[nodes.Program],
-    types: "Callable[[], Sequence[type[Artifact]] | None]",
-    folders: Iterable[Path],
-) -> list[Diagnostic]:
-    """Return warnings about misspelt names of beliefs, and about events of beliefs that never happen.
+@dataclass(frozen=True)
+class Whole:
+    """A project, or a lone program.
 
-    Args:
-        programs: all programs of the agents of a project.
-        types: returns all artifact types of the project, or None if they are not known; then only programs count. Called on
-            demand.
-        folders: folders of the project. Their files are searched on demand.
+    Attributes:
+        programs: the different programs of its agents.
+        types: the types of its artifacts; None: not known.
     """
-    found = [beliefs_of(program, STANDARD) for program in programs]
-    if any(each.is_open for each in found):
-        return []
-    check = _BeliefCheck(found, types, tuple(folders))
-    return [*check.misspelt(), *check.never_happening(), *check.from_wrong_source()]
+
+    programs: Sequence[nodes.Program]
+    types: "Sequence[type[Artifact]] | None"
 
 
 @dataclass(frozen=True)
+class Surroundings:
+    """What is around a project.
+
+    Attributes:
+        folders: searched for names on demand.
+        files: files whose content is known, which are not searched.
+        others: returns other projects that run the same programs; None: not known. Called on demand.
+        is_lone: there is only one program, which may be run with mapping files that are not given.
+    """
+
+    folders: tuple[Path, ...] = ()
+    files: Set[Path] = frozenset()
+    others: Callable[[], Sequence[Whole] | None] = lambda: ()
+    is_lone: bool = False
+
+
+def check_beliefs(whole: Whole, around: Surroundings) -> list[Diagnostic]:
+    """Return warnings about beliefs that programs use and nothing adds, and about their values."""
+    if not list(_BeliefCheck([whole], around.is_lone).findings(frozenset())):
+        return []
+    # Only if there is something to report, other projects and other files are read.
+    others = around.others()
+    if others is None:
+        return []
+    types = [each for one in (whole, *others) for each in one.types or ()]
+    elsewhere = words_elsewhere(around.folders, around.files | set(_sources(types)))
+    check = _BeliefCheck([whole, *others], around.is_lone and not others)
+    return [] if elsewhere is None else list(check.findings(elsewhere))
+
+
 class _BeliefCheck:
-    found: Sequence[Beliefs]
-    types: "Callable[[], Sequence[type[Artifact]] | None]"
-    folders: tuple[Path, ...]
+    """The findings about the first one of some projects that run the same programs."""
 
-    @cached_property
-    def _said(self) -> set[str]:
-        return {word for each in self.found for word in each.said} | _OF_THE_SYSTEM
+    def __init__(self, wholes: Sequence[Whole], is_lone: bool) -> None:
+        from jacaros.runtime.mas.checks.artifacts import lacks_actions
+        from jacaros.runtime.mas.checks.observables import observables_of, parameter_units
 
-    @cached_property
-    def _observables(self) -> frozenset[str] | None:
-        """The properties and signals of all artifacts; None if they are not known, because code computes their names."""
-        from jacaros.artifacts.env.manual import described, own_classes, written_properties, written_signals
+        self._is_lone = is_lone
+        programs = [program for each in wholes for program in each.programs]
+        is_known = all(each.types is not None for each in wholes)
+        types = list(dict.fromkeys(kind for each in wholes for kind in each.types or ()))
+        observables = observables_of(types) if is_known else None
+        flows = [flow_of(program, STANDARD, observables) for program in programs]
+        self._flow = Flow(flows, observables)
+        self._flows = flows[: len(wholes[0].programs)]
+        self._knows_artifacts = observables is not None
+        self._is_closed = (
+            self._knows_artifacts
+            and not any(each.tells_unseen for each in flows)
+            and not lacks_actions(programs, types)
+        )
+        self._units = parameter_units(types) if self._is_closed else {}
+        self._misspelt = _misspelt_adders(flows, observables or {})
+        self._mentioned = {key for each in flows for key in each.mentioned}
+        self._reported: set[Key] = set()
 
-        types = self.types()
-        names: set[str] = set()
-        for artifact_type in types or ():
-            if any(map(_works_names_out, own_classes(artifact_type))):
-                return None
-            for section in ("Properties", "Signals"):
-                names.update(described(artifact_type, section))
-            names.update(written_properties(artifact_type), written_signals(artifact_type))
-        return None if types is None else frozenset(names)
-
-    def misspelt(self) -> Iterator[Diagnostic]:
-        """Return warnings about names that are nearly those of beliefs that are added."""
-        made = {name for each in self.found for name in each.made}
-        known = {name for each in self.found for name in each.mentioned} | made | _OF_THE_SYSTEM
-        asked: dict[str, list[nodes.Literal]] = {}
-        for each in self.found:
-            for name, literals in each.asked.items():
-                if name not in known:
-                    asked.setdefault(name, []).extend(filter(_is_own, literals))
-        if asked:
-            made |= self._observables or frozenset()
-        meant = {}
-        for name in [each for each in asked if each not in made]:
-            similar = [each for each in made if is_misspelt(name, each)] or self._forms(name, asked[name])
-            if similar:
-                meant[name] = min(similar)
-        only_here = self._only_here({name: asked[name] for name in meant})
-        for name in meant:
-            for literal in asked[name] if name in only_here else ():
-                message = f"belief `{name}/{len(literal.arguments)}` is never added"
-                yield Diagnostic("warning", message, literal.span, did_you_mean([meant[name]]), CODE)
-
-    def _forms(self, name: str, asked: Sequence[nodes.Literal]) -> list[str]:
-        """Return names that are another form of a word (``zone``, ``zones``) and have a fact that answers the query."""
-        return [
-            known
-            for each in self.found
-            for known, facts in each.facts.items()
-            if is_slip_of(name, known) and any(is_fact_of(one, fact) for one in asked for fact in facts)
-        ]
-
-    def never_happening(self) -> Iterator[Diagnostic]:
-        """Return warnings about plans for beliefs that only rules conclude, or that are added only with another arity."""
-        made = {key for each in self.found for key in each.made_as}
-        mentioned = {key for each in self.found for key in each.mentioned_as} | made
-        never: list[tuple[nodes.Literal, Diagnostic]] = []
-        for each in self.found:
-            for key, events in each.events.items():
-                name = key[0]
-                if name in self._said or key in mentioned or (name, 0) in mentioned:
-                    continue
-                other = sorted(size for made_name, size in made if made_name == name)
-                rule = each.concluded.get(key)
-                if rule is None and (not other or any(key in one.concluded for one in self.found)):
-                    continue
-                why, help = _why_never(key, rule, other)
-                never += [
-                    (literal, _never(sign, literal, why, help))
-                    for sign, literal in events
-                    if _is_own(literal)
-                ]
-        if not never or (observables := self._observables) is None:
+    def findings(self, elsewhere: frozenset[str]) -> Iterator[Diagnostic]:
+        """Return the findings about beliefs that do not appear *elsewhere*."""
+        if self._flow.is_open:
             return
-        only_here = self._only_here(_by_name(literal for literal, _ in never), observables)
-        yield from (warning for literal, warning in never if literal.functor in only_here)
+        said = [each.spelled if self._is_closed else each.said for each in self._flow.programs]
+        doubtful = elsewhere.union(_OF_THE_SYSTEM, *said)
+        yield from self._never_read(doubtful)
+        for flow in self._flows:
+            adders = self._flow.adders(flow)
+            for reader in flow.readers:
+                if is_own(reader.literal) and reader.key[0] not in doubtful:
+                    yield from self._of_reader(reader, adders)
+            if self._is_closed:
+                doubtful_names = doubtful.union(name for name, _ in self._mentioned)
+                certain = {name: each for name, each in adders.items() if name not in doubtful_names}
+                yield from mismatches(flow, certain)
+                yield from mixed_units(flow, certain, self._units)
 
-    def from_wrong_source(self) -> Iterator[Diagnostic]:
-        """Return warnings about plans for beliefs from a source that they never have: percepts that only the agent adds,
-        and notes that only artifacts publish.
-        """
-        brought = {key for each in self.found for key in each.brought | set(each.concluded)}
-        wrong: list[tuple[str, nodes.Literal, bool]] = []
-        for each in self.found:
-            for key, events in each.events.items():
-                if key in brought or (key[0], 0) in brought or key[0] in self._said:
-                    continue
-                for sign, literal in events:
-                    is_percept = key in each.noted
-                    if _is_own(literal) and source_of(literal) == ("percept" if is_percept else "self"):
-                        wrong.append((sign, literal, is_percept))
-        if not wrong or (observables := self._observables) is None:
+    def _of_reader(self, reader: Reader, adders: Mapping[str, Sequence[Adder]]) -> Iterator[Diagnostic]:
+        """Return a warning about a belief that is never added, or never with this source or arity."""
+        (name, size), literal = reader.key, reader.literal
+        if (name, size) in self._mentioned or (name, 0) in self._mentioned:
             return
-        wrong = [each for each in wrong if (each[1].functor in observables) != each[2]]
-        certain = observables | self._only_here(_by_name(literal for _, literal, _ in wrong), observables)
-        for sign, literal, is_percept in wrong:
-            if literal.functor in certain:
-                yield _never(sign, literal, *_why_wrong(literal.functor, is_percept))
+        # A plan for a test goal causes no event, but shows that the name is meant.
+        is_event = reader.how == "event"
+        known = [each for each in adders.get(name, ()) if not is_event or each.how != "rule"]
+        same = [each for each in known if each.size in (None, size)]
+        rules = [each for each in adders.get(name, ()) if each.how == "rule" and each.size == size]
+        if same:
+            if is_event and self._knows_artifacts:
+                yield from _from_wrong_source(reader, [*same, *rules])
+        elif rules and self._knows_artifacts:
+            yield _never(reader, *_of_rule(reader, rules[0]))
+        elif known and self._knows_artifacts:
+            usages = [each.usage or f"{name}/{each.size}" for each in known if each.size is not None]
+            help, why = did_you_mean(sorted(dict.fromkeys(usages))), f"belief `{name}/{size}` is never added"
+            if is_event:
+                yield _never(reader, why, help)
+            elif self._is_closed:
+                yield problem(UNKNOWN, why, literal.span, help)
+        elif not known:
+            yield from self._never_added(reader, adders)
 
-    def _only_here(
-        self, places: Mapping[str, Sequence[nodes.Literal]], without: Container[str] = ()
-    ) -> frozenset[str]:
-        """Return the names that appear in no file except those of their literals, *without* some names."""
-        own = {
-            name: {Path(each.span.file.name).resolve() for each in literals if each.span is not None}
-            for name, literals in places.items()
-            if name not in without
-        }
-        for number, path in enumerate(_texts(self.folders) if own else ()):
-            if number >= _MOST_FILES:
-                return frozenset()
-            try:
-                words = set(_WORD.findall(file_bytes(path).decode(errors="replace")))
-            except OSError:
-                continue
-            for name in words.intersection(own):
-                if path.resolve() not in own[name]:
-                    del own[name]
-        return frozenset(own)
+    def _never_added(self, reader: Reader, adders: Mapping[str, Sequence[Adder]]) -> Iterator[Diagnostic]:
+        (name, size), literal = reader.key, reader.literal
+        similar = [each for each in adders if is_misspelt(name, each)] or _forms(reader, adders)
+        message = f"belief `{name}/{size}` is never added"
+        if any(meant == name for meant, _ in self._misspelt.values()):
+            return  # the belief that is added is misspelt
+        if similar:
+            yield problem(MISSPELT, message, literal.span, did_you_mean([min(similar)]))
+        elif self._is_closed and reader.key not in self._reported:
+            self._reported.add(reader.key)  # nothing is right about the other places either
+            private = [each for flow in self._flow.programs for each in flow.adders.get(name, ())]
+            if private:
+                yield problem(UNKNOWN, message, literal.span, _to_be_told(private[0]))
+            elif not (shipped := _shipped_with(name)) or not self._is_lone:
+                near = did_you_mean(close_matches(name, adders))
+                yield problem(UNKNOWN, message, literal.span, near or _to_be_added(literal, shipped))
+
+    def _never_read(self, doubtful: frozenset[str]) -> Iterator[Diagnostic]:
+        """Return warnings about beliefs that nothing reads, and whose names are nearly those of others that are read."""
+        for name, (meant, adders) in self._misspelt.items():
+            for each in adders if name not in doubtful else ():
+                if each.literal is not None and is_own(each.literal):
+                    message = f"belief `{name}/{each.size}` is added, but nothing reads it"
+                    yield problem(MISSPELT, message, each.literal.span, did_you_mean([meant]))
 
 
-def _by_name(literals: Iterable[nodes.Literal]) -> Mapping[str, Sequence[nodes.Literal]]:
-    places: dict[str, list[nodes.Literal]] = {}
-    for each in literals:
-        places.setdefault(each.functor, []).append(each)
-    return places
+def _misspelt_adders(
+    flows: Sequence[ProgramFlow], known: Container[str]
+) -> dict[str, tuple[str, Sequence[Adder]]]:
+    """Return beliefs that are added but never read, by name: what is meant, and what adds them.
+
+    If nothing adds the similar name either, the rarer of the two is wrong.
+
+    Args:
+        flows: all programs.
+        known: properties and signals.
+    """
+    reads = Counter(reader.key[0] for flow in flows for reader in flow.readers)
+    added: dict[str, list[Adder]] = {}
+    for flow in flows:
+        for name, adders in (*flow.adders.items(), *flow.told.items()):
+            added.setdefault(name, []).extend(adders)
+    used = reads.keys() | {name for flow in flows for name, _ in flow.mentioned}
+    found: dict[str, tuple[str, Sequence[Adder]]] = {}
+    for name in added.keys() - used:
+        meant = min((each for each in reads if is_misspelt(name, each)), default="")
+        if meant and (meant in added or meant in known or reads[meant] > len(added[name])):
+            found[name] = meant, added[name]
+    return found
 
 
-def _why_never(key: tuple[str, int], rule: nodes.Rule | None, other: Sequence[int]) -> tuple[str, str]:
-    name, size = key
-    if rule is None:
-        return f"belief `{name}/{size}` is never added", did_you_mean(f"{name}/{each}" for each in other)
-    asked = next((part for part in parts_of(rule.body) if isinstance(part, nodes.Literal)), None)
-    example = "" if asked is None else f": `+{format_term(asked)} : {format_term(rule.head)}`"
+def _forms(reader: Reader, adders: Mapping[str, Sequence[Adder]]) -> list[str]:
+    """Return names that are another form of a word (``zone``, ``zones``) and have a fact that answers the query."""
+    return [
+        known
+        for known, each in adders.items()
+        if is_slip_of(reader.key[0], known)
+        and any(
+            fact.how == "fact" and fact.literal is not None and is_fact_of(reader.literal, fact.literal)
+            for fact in each
+        )
+    ]
+
+
+def _from_wrong_source(reader: Reader, adders: Sequence[Adder]) -> Iterator[Diagnostic]:
+    """Return a warning about a source that a belief never has: percepts that only the agent adds, and notes that only
+    artifacts publish.
+    """
+    source, name = source_of(reader.literal), reader.literal.functor
+    if source == "percept" and all(map(_is_note, adders)):
+        help = "the agent adds it itself: write `[source(self)]`, or omit the source"
+        yield _never(reader, f"no artifact has `{name}`, so its source is never `percept`", help)
+    elif source == "self" and all(each.usage for each in adders):
+        help = "write `[source(percept)]`, or omit the source"
+        yield _never(reader, f"only artifacts have `{name}`, so its source is never `self`", help)
+
+
+def _is_note(adder: Adder) -> bool:
+    """Return whether a belief certainly has the agent itself as its source."""
+    is_plain = adder.literal is not None and adder.literal.annotations is None
+    return adder.how in ("fact", "step") and is_plain
+
+
+def _of_rule(reader: Reader, conclusion: Adder) -> tuple[str, str]:
+    name, size = reader.key
+    rule, example = conclusion.rule, ""
+    asked = rule and next((part for part in parts_of(rule.body) if isinstance(part, nodes.Literal)), None)
+    if rule and asked:
+        example = f": `+{format_term(asked)} : {format_term(rule.head)}`"
     help = f"rules cause no events; react to a belief in the body of the rule{example}"
     return f"`{name}/{size}` is the conclusion of a rule", help
 
 
-def _why_wrong(name: str, is_percept: bool) -> tuple[str, str]:
-    if is_percept:
-        help = "the agent adds it itself: write `[source(self)]`, or omit the source"
-        return f"no artifact has `{name}`, so its source is never `percept`", help
-    help = "write `[source(percept)]`, or omit the source"
-    return f"only artifacts have `{name}`, so its source is never `self`", help
+def _never(reader: Reader, why: str, help: str) -> Diagnostic:
+    name, size = reader.key
+    message = f"event `{reader.sign}{name}/{size}` never happens: {why}"
+    return problem(NEVER, message, reader.literal.span, help)
 
 
-def _never(sign: str, literal: nodes.Literal, why: str, help: str) -> Diagnostic:
-    message = f"event `{sign}{literal.functor}/{len(literal.arguments)}` never happens: {why}"
-    return Diagnostic("warning", message, literal.span, help, NEVER)
+def _to_be_told(adder: Adder) -> str:
+    literal = adder.literal
+    where = f"{literal.span.file.name}:{literal.span.line}" if literal and literal.span else "another agent"
+    told = format_term(literal) if literal else ""
+    return f"{where} adds it for its own agent only; to pass it on: `.send(NAME, tell, {told})`"
 
 
-def _is_own(literal: nodes.Literal) -> bool:
-    """Return whether a literal is in a file of the project, not in a library of JaCaROS."""
-    return literal.span is not None and not literal.span.file.name.startswith("$")
+def _to_be_added(literal: nodes.Literal, shipped: str) -> str:
+    if shipped:
+        return f"`{shipped}` has it: run and check with `--mapping {shipped}`"
+    written = format_term(nodes.replace(literal, annotations=None))
+    return f"add it in a plan (`+{written}`), or at the beginning (`{written}.`)"
 
 
-def _works_names_out(artifact_class: type) -> bool:
-    """Return whether the code of a class computes names of properties. Built-in classes declare all of theirs."""
-    if artifact_class.__module__.startswith("jacaros."):
-        return False
-    try:
-        return _NAMES_ITSELF.search(inspect.getsource(artifact_class)) is not None
-    except (OSError, TypeError):
-        return True
+def _shipped_with(name: str) -> str:
+    """Return the mapping of JaCaROS that has a property or signal; empty if none has it."""
+    from jacaros.robots.mapping.file import SHIPPED, shipped_mappings
+
+    pattern = re.compile(rf"^ +{re.escape(name)}:", re.MULTILINE)
+    for file in shipped_mappings():
+        if pattern.search((SHIPPED / file).read_text(encoding="utf-8")):
+            return file
+    return ""
+
+
+# Other files.
+
+
+def words_elsewhere(folders: Iterable[Path], known: Set[Path]) -> frozenset[str] | None:
+    """Return the words in files that may give agents beliefs; None if there are too many files.
+
+    Args:
+        folders: where they are searched.
+        known: files whose content is known.
+    """
+    found: set[str] = set()
+    for number, path in enumerate(_texts(folders)):
+        if number >= _MOST_FILES:
+            return None
+        if path.resolve() in known:
+            continue
+        try:
+            text = file_bytes(path).decode(errors="replace")
+        except OSError:
+            continue
+        if path.suffix != ".asl" or _TELLS.search(text):
+            found.update(_WORD.findall(text))
+    return frozenset(found)
+
+
+def _sources(types: "Iterable[type[Artifact]]") -> Iterator[Path]:
+    """Yield the files of artifact types: what they give agents is known."""
+    for each in types:
+        mapping = getattr(each, "mapping", None)
+        try:
+            yield Path(mapping.file if mapping is not None else inspect.getfile(each)).resolve()
+        except (OSError, TypeError):
+            continue
 
 
 def _texts(folders: Iterable[Path]) -> Iterator[Path]:

@@ -28,7 +28,7 @@ from jacaros.runtime.mas.deployment import AgentSpec, Deployment, ProjectError
 from jacaros.runtime.mas.project.reading import read_project
 
 if TYPE_CHECKING:
-    from jacaros.artifacts.env.artifact import Artifact
+    from jacaros.runtime.mas.checks.beliefs import Whole
 
 PROJECTS: Final = (".mas2j", ".jcm")
 MAPPINGS: Final = (".yaml", ".yml")
@@ -159,7 +159,7 @@ def _check_lone_program(path: Path, findings: Findings) -> Set[Path]:
     folders = source_folders(path.parent)
     checked = _Checked(Deployment(path.stem, path.parent), folders, findings)
     if checked.check_program(AgentSpec(path.stem, path)):
-        checked.check_beliefs()
+        checked.check_beliefs(is_lone=True)
         checked.check_mappings()
         from jacaros.runtime.mas.checks.artifacts import artifact_types  # here: see `_Checked.of_artifacts`
 
@@ -317,25 +317,51 @@ class _Checked:
         programs = self.programs if is_known else []
         return check_artifacts(self.deployment, programs, self._folders, find_type)
 
-    def check_beliefs(self) -> None:
-        """Report misspelt beliefs unless classes of the project may add more."""
-        from jacaros.runtime.mas.checks.artifacts import made_types  # here: see `of_artifacts`
-        from jacaros.runtime.mas.checks.beliefs import check_beliefs
+    def check_beliefs(self, is_lone: bool = False) -> None:
+        """Report beliefs that nothing adds, unless classes of the project may add more.
+
+        Args:
+            is_lone: there is only one program, which may be run with mapping files that are not given.
+        """
+        from jacaros.runtime.mas.checks.beliefs import Surroundings, check_beliefs  # here: see `of_artifacts`
 
         if any(agent.agent_class for agent, _ in self.programs):
             return
+        # The working folder may be any, with any words in its files.
+        base = self.deployment.base_path.absolute()
+        own = tuple(each for each in self._folders if each.absolute().is_relative_to(base))
+        around = Surroundings(own, self._findings.files, self._others, is_lone)
+        self._findings.diagnostics += check_beliefs(self._whole(), around)
+
+    def _whole(self) -> "Whole":
+        from jacaros.robots.registry import type_finder  # here: see `of_artifacts`
+        from jacaros.runtime.mas.checks.artifacts import made_types
+        from jacaros.runtime.mas.checks.beliefs import Whole
+
         trees = [program for _, program in self.programs]
+        return Whole(trees, made_types(self.deployment, trees, type_finder(self._modules())))
 
-        def types() -> "list[type[Artifact]] | None":
-            from jacaros.robots.registry import type_finder  # here: see `of_artifacts`
-
-            return made_types(self.deployment, trees, type_finder(self._modules()))
-
-        base = (
-            self.deployment.base_path.absolute()
-        )  # the working folder may be any, with any words in its files
-        own = [each for each in self._folders if each.absolute().is_relative_to(base)]
-        self._findings.diagnostics += check_beliefs(trees, types, own)
+    def _others(self) -> "list[Whole] | None":
+        """Return the other projects that run these programs; None if one of them is not known."""
+        found: list[Whole] = []
+        own = {agent.source_path.resolve() for agent, _ in self.programs}
+        base = self.deployment.base_path.resolve()
+        for path in (each for folder in (base, *base.parents[:2]) for each in folder.iterdir()):
+            if path.suffix not in PROJECTS or path in self._findings.files:
+                continue
+            try:
+                deployment = read_project(path).deployment
+            except ProjectError:
+                continue
+            if own.isdisjoint(agent.source_path.resolve() for agent in deployment.agents):
+                continue
+            folders = (deployment.base_path, *deployment.source_paths)
+            other = _Checked(deployment, folders, Findings(unseen=self._findings.unseen))
+            for agent in deployment.agents:
+                if agent.agent_class or agent.is_python or not other.check_program(agent):
+                    return None
+            found.append(other._whole())
+        return found
 
 
 def _check_world(deployment: Deployment, findings: Findings) -> None:

@@ -1,0 +1,101 @@
+"""What artifact types give agents: their properties and signals with what is known of the values, and the units of their
+operations' parameters.
+
+>>> value_of_words("whole number in percent")
+Value(kind='number', options=(), unit='percent', whole=True)
+>>> value_of_words("one of free, front").options
+('free', 'front')
+"""
+
+import inspect
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Final
+
+from jacaros.agents.checks.flow import UNKNOWN, Adder, Value
+from jacaros.artifacts.env.manual import described, own_classes, written_usages
+
+if TYPE_CHECKING:
+    from jacaros.artifacts.env.artifact import Artifact
+
+_NAMES_ITSELF: Final = re.compile(r"\b(?:define_property|signal)\(\s*[^\s\"')]")
+"""Code that computes a name."""
+_NUMBER: Final = re.compile(
+    r"(?P<whole>whole )?number(?: (?:in|of|from) (?P<unit>[\w ]+?))?(?:, \d+ decimals?)?"
+)
+_SEVERAL: Final = ("...", "Values")
+"""Words for any number of values."""
+_OPEN_LIST: Final = "..."
+
+
+def observables_of(types: "Iterable[type[Artifact]]") -> dict[str, list[Adder]] | None:
+    """Return the properties and signals of artifacts, by name; None if code computes their names."""
+    found: dict[str, list[Adder]] = {}
+    for artifact_type in types:
+        if any(map(_computes_names, own_classes(artifact_type))):
+            return None
+        for how, section in (("property", "Properties"), ("signal", "Signals")):
+            for name, (usage, text) in described(artifact_type, section).items():
+                found.setdefault(name, []).append(_adder(how, usage, text))
+        for name, usage in written_usages(artifact_type):
+            found.setdefault(name, []).append(_adder("property", usage, ""))
+    return found
+
+
+def parameter_units(types: "Iterable[type[Artifact]]") -> dict[tuple[str, int], Sequence[str]]:
+    """Return the units of the parameters of mapped operations; those that differ among artifacts are empty."""
+    found: dict[tuple[str, int], Sequence[str]] = {}
+    for artifact_type in types:
+        for declared in artifact_type.interface.operations:
+            words: dict[str, str] = getattr(declared.source, "parameter_words", dict)()
+            names = [each.name for each in declared.signature.parameters]
+            units = [value_of_words(words.get(name, "")).unit for name in names]
+            before = found.setdefault((declared.name, len(names)), units)
+            found[declared.name, len(names)] = [
+                one if one == other else "" for one, other in zip(before, units, strict=True)
+            ]
+    return found
+
+
+def _adder(how: str, usage: str, text: str) -> Adder:
+    written = usage.partition("(")[2].rpartition(")")[0]
+    names = [each.strip() for each in written.split(",")] if written else []
+    if any(name in _SEVERAL for name in names):
+        return Adder(how, None, usage=usage)
+    return Adder(how, len(names), tuple(_values(names, text)), usage=usage)
+
+
+def _values(names: Sequence[str], text: str) -> Iterator[Value]:
+    """Yield what a description such as ``X: number in metres; Yaw: number in degrees`` says of values."""
+    pairs = [part.partition(": ") for part in re.split(r"[;.] ", text.rstrip("."))]
+    words = {name.strip(): word for name, _, word in pairs}
+    within = ""  # `Ranges1 to Ranges5: number in metres`
+    for name in names:
+        spans = [each for each in words if each.startswith(f"{name} to ")]
+        within = spans[0] if spans else within
+        yield value_of_words(words.get(name) or words.get(within, ""))
+        within = "" if within.endswith(f" to {name}") else within
+
+
+def value_of_words(words: str) -> Value:
+    """Return what the words of a manual say of a value."""
+    if (number := _NUMBER.fullmatch(words)) is not None:
+        return Value("number", (), number["unit"] or "", number["whole"] is not None)
+    if words == "true or false":
+        return Value("atom", ("true", "false"))
+    if words.startswith("one of "):
+        options = tuple(dict.fromkeys(words.removeprefix("one of ").split(", ")))
+        return Value("atom", () if _OPEN_LIST in options else options)
+    kinds = {"text": "string", "atom": "atom", "list": "list"}
+    kind = kinds.get("list" if words.startswith("list of ") else words, "")
+    return Value(kind) if kind else UNKNOWN
+
+
+def _computes_names(artifact_class: type) -> bool:
+    """Return whether the code of a class computes names of properties. Built-in classes declare all of theirs."""
+    if artifact_class.__module__.startswith("jacaros."):
+        return False
+    try:
+        return _NAMES_ITSELF.search(inspect.getsource(artifact_class)) is not None
+    except (OSError, TypeError):
+        return True
