@@ -36,4 +36,4 @@
 
 +!work(I, N)
   <- -+state(I, N);
-     !work(I, (N * 7 + I) mod 1000).
+     !work(I, (N * 7 + I) mod 1000).  // jacaros: ignore loop-without-wait (busy on purpose)

@@ -28,6 +28,7 @@ from jacaros.agents.checks.goals import (
     unknown_performatives,
     wrong_arguments,
 )
+from jacaros.agents.checks.loops import loops_without_wait
 from jacaros.agents.checks.unreachable import contexts_never_true, never_selected
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import LEVELS, Diagnostic, SourceFile, Span, problem
@@ -156,7 +157,9 @@ def _mistakes(program: nodes.Program, known: KnownActions, errors: Sequence[Diag
     for clause in clauses:
         warnings += vain_comparisons(clause)
     if not errors:
-        warnings += [*goals_without_plan(program, found, known), *never_selected(program, found, known)]
+        warnings += goals_without_plan(program, found, known)
+        warnings += never_selected(program, found, known)
+        warnings += loops_without_wait(program, found, known)
     return warnings
 
 

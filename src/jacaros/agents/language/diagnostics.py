@@ -172,7 +172,7 @@ _CODES: Final[dict[Severity, str]] = {
     """,
     "warning": """
         acting-condition capital-constant changed-variable comparison-without-value
-        condition-as-step context-never-true event-never-happens java-function misspelt-annotation
+        condition-as-step context-never-true event-never-happens java-function loop-without-wait misspelt-annotation
         misspelt-belief never-matches no-effect ordered-atom organisation-library plan-never-selected
         plan-too-large singleton-variable too-many unknown-artifact-type unknown-belief unknown-code unknown-goal
         unknown-internal-action unknown-library unknown-message-type unknown-operation

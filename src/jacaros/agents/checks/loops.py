@@ -1,0 +1,207 @@
+"""Check for goals and loops that repeat without end and without a step that takes time: they use a whole processor.
+
+>>> from jacaros.agents.checks.goals import KnownActions
+>>> from jacaros.agents.language.loader import load_program
+>>> program, _ = load_program("robot.asl", "!start. +!start <- +ready; !start.")
+>>> [each.message for each in loops_without_wait(program, ByKind(program.plans), KnownActions({}))]
+['`!start` repeats without end, and nothing in it waits or acts']
+"""
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Final
+
+from jacaros.agents.checks.formulas import annotations_of, is_true
+from jacaros.agents.checks.goals import KnownActions
+from jacaros.agents.language import nodes
+from jacaros.agents.language.diagnostics import Diagnostic, problem
+from jacaros.agents.language.nodes import ByKind, names_in, parts_of, walk
+
+_PURE: Final = frozenset(
+    {".concat", ".count", ".date", ".findall", ".length", ".my_name", ".nano_time", ".random", ".time"}
+)
+"""Internal actions that take no time and do not fail."""
+_ENDING: Final = frozenset(
+    {".drop_all_desires", ".drop_all_events", ".drop_all_intentions", ".drop_desire", ".drop_event"}
+    | {".drop_intention", ".fail_goal", ".kill_agent", ".succeed_goal", ".suspend"}
+)
+"""Internal actions by which another intention may end a loop."""
+
+_Event = tuple[str, str, int, object]
+"""Kind of an event (``!``, or empty for a belief), its name, number of arguments and namespace."""
+_HELP: Final = "wait in it, as in `.wait(1000)`, or end it with another plan"
+
+
+def loops_without_wait(program: nodes.Program, found: ByKind, known: KnownActions) -> Iterator[Diagnostic]:
+    """Warn of goals whose plans all post the goal again, and of ``while`` loops, if no step waits or acts.
+
+    A goal that has a plan without such a step, or that something else may end, is not reported.
+    """
+    if any(call.name in _ENDING or known.of(call).changes_plans for call in found.of(nodes.InternalAction)):
+        return
+    quick = _Quick(program, known)
+    for loop in found.of(nodes.While):
+        lasts = is_true(loop.condition) or (_asks_beliefs(loop.condition) and not _changes(loop.body))
+        if lasts and quick.are(loop.body.steps):
+            yield _without_wait("this loop", loop)
+    reposts = _reposts(_by_event(program.plans), quick)
+    seen: set[_Event] = _ended(found)
+    event: _Event | None
+    for event in reposts:
+        path: list[_Event] = []
+        while event is not None and event not in seen and event not in path:
+            path.append(event)
+            event = _event_of(reposts[event])
+        if event is not None and event in path:
+            kind, name, *_ = event
+            yield _without_wait(f"`{kind or '+'}{name}`", reposts[path[-1]])
+        seen.update(path)
+
+
+def _without_wait(what: str, node: nodes.Step) -> Diagnostic:
+    message = f"{what} repeats without end, and nothing in it waits or acts"
+    return problem("loop-without-wait", message, node.span, _HELP)
+
+
+def _by_event(plans: Iterable[nodes.Plan]) -> dict[_Event, list[nodes.Plan]]:
+    found: dict[_Event, list[nodes.Plan]] = {}
+    for plan in plans:
+        if plan.trigger.operator == "+" and isinstance(plan.trigger.literal, nodes.Literal):
+            found.setdefault(_key(plan.trigger.kind, plan.trigger.literal), []).append(plan)
+    return found
+
+
+def _key(kind: str, literal: nodes.Literal) -> _Event:
+    return kind, f"{'~' * literal.negated}{literal.functor}", len(literal.arguments), literal.namespace
+
+
+def _reposts(plans: Mapping[_Event, list[nodes.Plan]], quick: "_Quick") -> dict[_Event, nodes.Step]:
+    """Return the events that always lead to one of them, each with the step that raises the next one."""
+    raised = {
+        event: [
+            quick.raising(plan, plans) for plan in sorted(of_event, key=lambda each: not _takes_all(each))
+        ]
+        for event, of_event in plans.items()
+        if any(map(_takes_all, of_event))
+    }
+    while True:
+        kept = {
+            event: [[step for step in steps if _event_of(step) in raised] for steps in of_plans]
+            for event, of_plans in raised.items()
+            if all(any(_event_of(step) in raised for step in steps) for steps in of_plans)
+        }
+        if len(kept) == len(raised):
+            return {event: of_plans[0][0] for event, of_plans in kept.items()}
+        raised = kept
+
+
+def _takes_all(plan: nodes.Plan) -> bool:
+    """Return whether a plan is applicable to every event of its name."""
+    literal = plan.trigger.literal
+    assert isinstance(literal, nodes.Literal)
+    variables = all(isinstance(each, nodes.Variable) for each in literal.arguments)
+    return is_true(plan.context) and variables and len(set(literal.arguments)) == len(literal.arguments)
+
+
+def _event_of(step: nodes.Step) -> _Event | None:
+    """Return the event that a step certainly raises."""
+    if isinstance(step, nodes.Achieve) and isinstance(step.goal, nodes.Literal):
+        return _key("!", step.goal)
+    if (
+        isinstance(step, nodes.BeliefChange)
+        and "+" in step.operator
+        and isinstance(step.operand, nodes.Literal)
+    ):
+        # A belief that is there raises no event; one with another value does.
+        return _key("", step.operand) if ByKind(step.operand).of(nodes.Arithmetic) else None
+    return None
+
+
+def _ended(found: ByKind) -> set[_Event]:
+    """Return the goals that something ends: an annotation, a goal condition or another branch; and their sub-goals."""
+    ending = [goal for goal in found.of(nodes.Achieve) if annotations_of(goal.goal)]
+    roots = [*ending, *found.of(nodes.Fork), *(each for each in found.of(nodes.Plan) if _has_end(each))]
+    ended: set[_Event] = set()
+    while roots:
+        goals = {
+            each for node in walk(*roots) if isinstance(node, nodes.Achieve) and (each := _event_of(node))
+        }
+        goals -= ended
+        ended |= goals
+        plans = [each for each in found.of(nodes.Plan) if isinstance(each.trigger.literal, nodes.Literal)]
+        roots = [each for each in plans if _key(each.trigger.kind, each.trigger.literal) in goals]  # type: ignore[arg-type]
+    return ended
+
+
+def _has_end(plan: nodes.Plan) -> bool:
+    return plan.goal_condition is not None or (
+        isinstance(plan.label, nodes.Literal) and bool(annotations_of(plan.label))
+    )
+
+
+def _asks_beliefs(condition: nodes.Term) -> bool:
+    return all(isinstance(part, nodes.Literal) and part.functor != "false" for part in parts_of(condition))
+
+
+def _changes(body: nodes.Body) -> bool:
+    return any(isinstance(node, nodes.BeliefChange | nodes.Achieve) for node in walk(body))
+
+
+class _Quick:
+    """Tells the steps that take no time and do not fail."""
+
+    def __init__(self, program: nodes.Program, known: KnownActions) -> None:
+        self._known = known
+        self._plans = _by_event(program.plans)
+        self._asked: dict[_Event, bool] = {}
+        facts = {_key("", each) for each in program.beliefs if isinstance(each, nodes.Literal)}
+        changes = ByKind(program.plans).of(nodes.BeliefChange)
+        gone = {
+            _key("", each.operand)
+            for each in changes
+            if each.operator.startswith("-")
+            and "+" not in each.operator
+            and isinstance(each.operand, nodes.Literal)
+        }
+        self._lasting = facts - gone
+
+    def raising(self, plan: nodes.Plan, plans: Mapping[_Event, object]) -> list[nodes.Step]:
+        """Return the steps of a plan that raise events with plans and that only quick steps come before."""
+        found: list[nodes.Step] = []
+        for step in plan.body.steps if isinstance(plan.body, nodes.Body) and not plan.subplans else ():
+            if _event_of(step) in plans:
+                found.append(step)
+            if not self._is(step):
+                break
+        return found
+
+    def are(self, steps: Iterable[nodes.Step]) -> bool:
+        """Return whether all these steps are quick."""
+        return all(map(self._is, steps))
+
+    def _is(self, step: nodes.Step) -> bool:
+        match step:
+            case nodes.BeliefChange():
+                return True
+            case nodes.Constraint(nodes.InternalAction() as call):
+                return self._known.of(call).prints or call.name in _PURE
+            case nodes.Constraint(nodes.Relation("=", nodes.Variable())):
+                return True
+            case nodes.Test(nodes.Literal() as asked):
+                return _key("", asked) in self._lasting and len(names_in(asked)) == len(asked.arguments)
+            case nodes.If(_, then, otherwise):
+                return self.are(then.steps) and (otherwise is None or self.are(otherwise.steps))
+            case nodes.For(_, body):
+                return self.are(body.steps)
+            case nodes.Achieve(nodes.Literal() as goal, separate):
+                return separate or self._ends(_key("!", goal))
+        return False
+
+    def _ends(self, event: _Event) -> bool:
+        """Return whether a goal is achieved by quick steps."""
+        if event not in self._asked:
+            self._asked[event] = False  # while it is looked at: a recursion
+            plans = self._plans.get(event, ())
+            self._asked[event] = any(map(_takes_all, plans)) and all(
+                isinstance(plan.body, nodes.Body) and self.are(plan.body.steps) for plan in plans
+            )
+        return self._asked[event]
