@@ -1,13 +1,14 @@
 """Every program that is right: what `jacaros check` says about it is a false alarm, or a true one with a reason.
 
-Examples and the listings of the thesis are checked as folders, recorded programs as what was run, and the programs of a page
-with the mappings that its commands name.
+Examples and the listings of the thesis are checked as folders, recorded programs as they were run, and the programs
+of a page with the mappings that its commands name.
 """
 
 import re
 import shlex
 import sys
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 
 from examples import examples
@@ -17,7 +18,7 @@ from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.runtime.mas.checks.files import check_files
 
 sys.path.insert(0, str(ROOT / "tests/conformance"))
-from check import find_cases  # noqa: E402
+from check import find_cases
 
 SHIPPED = ROOT / "src/jacaros/robots/mappings"
 
@@ -51,9 +52,7 @@ def _commands(page: Path, files: dict[str, str]) -> Iterator[tuple[str, tuple[st
         for line in re.findall(r"^\$ jacaros (?:run|test|check) (.*)", block.text, re.MULTILINE):
             words = shlex.split(line, comments=True)
             if words and words[0] in files and words[0].endswith((".asl", ".jcm", ".mas2j")):
-                mappings = [
-                    value for word, value in zip(words, words[1:], strict=False) if word == "--mapping"
-                ]
+                mappings = [value for word, value in pairwise(words) if word == "--mapping"]
                 # The mapping of a robot of the reader's own is not there.
                 if all(each in files or (SHIPPED / each).is_file() for each in mappings):
                     yield words[0], tuple(mappings)
