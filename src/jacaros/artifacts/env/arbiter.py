@@ -188,6 +188,9 @@ def _reaches(edges: dict[Claim, list[tuple[Claim, Claim, str]]], start: Claim, g
     return False
 
 
+OwnerListener = Callable[[str, str | None], None]
+"""Takes a resource and its new owner: the outermost plan or operation that holds it, or None if it is free."""
+
 REPORTED = 300.0
 """Seconds of waiting that cause a warning. Charging for a minute is not starvation."""
 
@@ -206,8 +209,15 @@ class Arbiter:
         self._holders: dict[str, list[Claim]] = {}
         self._arrivals = 0
         self._settling = self._again = False
+        self._listener: OwnerListener | None = None
+        self._owners: dict[str, str] = {}
 
     # ---- state
+
+    def listen(self, listener: OwnerListener | None) -> None:
+        """Report the owners of resources to *listener* from now on, present ones immediately; None ends this."""
+        self._listener, self._owners = listener, {}
+        self._report_owners()
 
     def holders(self, name: str) -> tuple[Claim, ...]:
         """Return the claims that hold a resource."""
@@ -282,6 +292,16 @@ class Arbiter:
         for claim in self._waiting:
             if claim.report is None:
                 claim.report = self._clock.call_later(REPORTED, partial(self._report, claim))
+        self._report_owners()
+
+    def _report_owners(self) -> None:
+        if self._listener is None:
+            return
+        owners = {name: claims[0].root.who for name, claims in self._holders.items()}
+        for name in dict.fromkeys((*self._owners, *owners)):
+            if owners.get(name) != self._owners.get(name):
+                self._listener(name, owners.get(name))
+        self._owners = owners
 
     def _change_one(self) -> bool:
         """Change the state of one claim. Return False if no claim needs a change."""

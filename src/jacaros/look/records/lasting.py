@@ -36,6 +36,7 @@ _RULES: dict[str, _Rule] = {
     "focus": _Rule(("agent", "artifact"), lambda data: not data.get("on")),
     "property": _Rule(("artifact", "name"), lambda data: data.get("values") is None),
     "operation": _Rule(("id",), lambda data: data.get("state") != "began"),
+    "resource": _Rule(("resource",), lambda data: data.get("holder") is None),
     "member": _Rule(("member",), lambda data: data.get("state") == "left"),
     "path": _Rule(("robot",), lambda data: not data.get("points")),
     "laser": _Rule(("robot",)),

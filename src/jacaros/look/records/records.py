@@ -327,6 +327,13 @@ class OperationRecord(EventRecord):
     outputs: Sequence[Maybe] | None = None
 
 
+class ResourceRecord(EventRecord, omit_defaults=False):
+    """`resource`; `holder`: the plan or operation that has it now, such as `[robot] !go(dock)`, or null when it is free"""
+
+    resource: str
+    holder: Maybe = None
+
+
 class CauseRecord(EventRecord):
     """`id`, `parent`, `kind`, `what`, `at` (seconds), and if known, `agent`, `intention`, `plan`, `file`, `line`,
     `artifact`, `topic`

@@ -44,6 +44,7 @@ class EnvironmentRecords:
         """Observe *environment*, and record its current state."""
         self._environment = environment
         environment.listener = self
+        environment.arbiter.listen(self._owned)
         for workspace in environment.workspaces():
             if isinstance(workspace, Workspace):
                 for artifact in workspace.artifacts():
@@ -54,6 +55,7 @@ class EnvironmentRecords:
         self.flush(all_of_them=True)
         if self._environment is not None:
             self._environment.listener = None
+            self._environment.arbiter.listen(None)
             self._environment = None
 
     # ---- called by the environment
@@ -130,6 +132,9 @@ class EnvironmentRecords:
         term = None if outcome is None or outcome.reason is None else limited(str(outcome.reason))
         reason = "cancelled" if outcome is None else limited(outcome.message or str(outcome.reason or ""))
         self._tell(replace(began, state="failed", reason=reason, term=term or None))
+
+    def _owned(self, resource: str, holder: str | None) -> None:
+        self._tell(records.ResourceRecord(resource, holder))
 
     # ---- properties
 

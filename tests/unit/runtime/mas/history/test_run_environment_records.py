@@ -102,6 +102,19 @@ def test_an_operation_fails_with_its_reason_or_because_it_is_cancelled(tmp_path:
     assert reasons == ["it is of glass", "cancelled"]
 
 
+def test_owners_of_a_resource_are_recorded_when_they_change(tmp_path: Path) -> None:
+    program = """
+        !tidy. !alarm.
+        @tidy[needs(arm)] +!tidy <- .wait(1000).
+        +!alarm <- .wait(300); !flee.
+        @flee[needs(arm), urgency(5)] +!flee <- .wait(200).
+    """
+    found = happened(tmp_path, program, 3)
+    owners = [(t, data["holder"]) for t, kind, data in found if kind == "resource"]
+    assert owners == [(0.0, "[ann] !tidy"), (0.3, "[ann] !flee"), (0.5, "[ann] !tidy"), (1.0, None)]
+    assert {each["resource"] for each in of(found, "resource")} == {"arm"}
+
+
 def test_recorded_values_are_limited(tmp_path: Path) -> None:
     program = f'!s. +!s <- makeArtifact(lamp, "Lamp", [], L); say("{"x" * 5000}").'
     found = happened(tmp_path, program, 1, {"artifacts.py": LAMPS})
