@@ -15,6 +15,8 @@ import { Fleet } from "./fleet.js";
 import { FleetView } from "./fleet_view.js";
 import { GraphView } from "./graph_view.js";
 import { listenToKeys } from "./keys.js";
+import { Lanes } from "./lanes.js";
+import { LanesView } from "./lanes_view.js";
 import { Links } from "./links.js";
 import { Log } from "./log.js";
 import { LogView } from "./log_view.js";
@@ -56,9 +58,9 @@ export const NO_COMMANDS = {
  */
 export function startPage({ live, commands }) {
   const world = new World(), links = new Links(), log = new Log(), minds = new Minds();
-  const environment = new Environment(), messages = new Messages(), causes = new Causes(), debugging = new Debugging(), fleet = new Fleet();
+  const environment = new Environment(), messages = new Messages(), causes = new Causes(), debugging = new Debugging(), fleet = new Fleet(), lanes = new Lanes();
   const sources = new SeriesSources(world), thresholds = new CurveThresholds(minds, sources), refusals = new Refusals();
-  const models = [world, links, log, minds, environment, messages, causes, debugging, fleet, sources, thresholds, refusals];
+  const models = [world, links, log, minds, environment, messages, causes, debugging, fleet, sources, thresholds, refusals, lanes];
   const run = new Run(models), selection = new Selection(), time = new Time(run, live);
   const context = { run, selection, commands, time, open: (panel) => tabs.open(panel), actions: new Actions(), axis: new TimeAxis(time) };
   context.curves = new CurveChoice(sources, thresholds, time);
@@ -83,6 +85,7 @@ export function startPage({ live, commands }) {
     [at("robots"), new RobotsView(at("robots"), context, world, links)],
     [at("log"), new LogView(at("log"), context, log)],
     [at("when"), new TimeView(at("when"), context)],
+    [at("lanes"), new LanesView(at("lanes"), context, { lanes, minds, messages })],
     [at("curves"), new CurvesView(at("curves"), context, { sources, thresholds, refusals, log, minds })],
     [at("timeline"), new TimelineView(at("timeline"), context, log)],
   ];
