@@ -129,9 +129,9 @@ async def test_thresholds_and_folded_refusals_are_drawn_with_their_names() -> No
         await page.evaluate(DRAWN)
         await page.wait_for("window.drawn.some(([text]) => text === '20: @charge')")
         drawn = dict(await page.evaluate("window.drawn"))
-        assert "bob limit: low" in drawn
+        assert "30 limit: low" in drawn
         assert any(text.startswith("40× @charge") for text in drawn), drawn
-        assert drawn["bob limit: low"] < drawn["20: @charge"] < drawn["0"]
+        assert drawn["30 limit: low"] < drawn["20: @charge"] < drawn["0"]
 
 
 @needs_chromium

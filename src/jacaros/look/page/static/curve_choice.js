@@ -18,16 +18,15 @@ export class CurveChoice {
     return (chosen.length ? chosen : this.keys?.length === 0 ? [] : this.typical()).map((key) => this.sources.get(key));
   }
 
-  /** What contexts compare, the batteries, and where the first robot is. */
+  /** What contexts compare, batteries, and where the only robot is. */
   typical() {
     if (this.typicalOf === this.sources.version) return this.found;
     this.typicalOf = this.sources.version;
-    const all = this.sources.shown(), robots = all.filter(({ key }) => key.startsWith("robot ")), [first] = robots;
-    const compared = this.thresholds.compared(), hasBattery = compared.some(({ name }) => name === "battery");
-    const where = robots.filter(({ name, of }) => of === first.of && (name === "x" || name === "y"));
-    const found = [...compared, ...robots.filter(({ name }) => name === "battery" && !hasBattery)].slice(0, MOST - where.length);
-    this.found = [...found, ...where].map(({ key }) => key);
-    if (!this.found.length) this.found = all.slice(0, MOST).map(({ key }) => key);
+    const all = this.sources.shown(), robots = all.filter(({ key }) => key.startsWith("robot ")), compared = this.thresholds.compared();
+    const where = robots.filter(({ name, of }) => (name === "x" || name === "y") && robots.every((each) => each.of === of));
+    const batteries = compared.some(({ name }) => name === "battery") ? [] : robots.filter(({ name }) => name === "battery");
+    const found = [...[...compared, ...batteries].slice(0, MOST - where.length), ...where];
+    this.found = (found.length ? found : all.slice(0, MOST)).map(({ key }) => key);
     return this.found;
   }
 

@@ -1,5 +1,4 @@
 import { themeColor } from "./elements.js";
-import { valueAt } from "./curve_scale.js";
 
 const DASHES = [5, 4];
 const MARKS = { failure: ["▲", "bad"], task: ["●", "accent"], docked: ["■", "dock"], intervention: ["◆", "person"], pause: ["‖", "muted"] };
@@ -77,12 +76,15 @@ export class CurveDrawing {
     pen.setLineDash([]);
   }
 
-  /** A value that a context compares a curve with: a dashed line. Returns the height of its label, NaN for none. */
-  threshold({ value, source }, series, scale, color) {
-    const { axis } = this, shown = source ? valueAt(source, Math.min(axis.to, this.end)) : value, y = Math.round(scale.y(shown)) + 0.5;
-    if (source) this.curve({ series, source, scale: 1 }, scale, color, DASHES);
+  /**
+   * A value that a context compares a curve with: a dashed line, or the `curve` of a belief that changes. Returns the height
+   * of its label, NaN for none.
+   */
+  threshold(value, curve, scale, color) {
+    const { axis } = this, y = Math.round(scale.y(value)) + 0.5;
+    if (curve) this.curve(curve, scale, color, DASHES);
     else this.line([axis.left, y, this.right, y], color, DASHES);
-    return shown >= scale.low && shown <= scale.high ? y : NaN;
+    return value >= scale.low && value <= scale.high ? y : NaN;
   }
 
   thresholdLabel(text, y, color) {

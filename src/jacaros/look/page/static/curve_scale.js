@@ -17,7 +17,11 @@ export class CurveScale {
     if (!(low <= high)) [low, high] = [0, 1];
     const room = (high - low) * ROOM || Math.abs(high) * 0.1 || 1;
     Object.assign(this, isPercent ? { low, high } : { low: low - room, high: high + room });
-    const step = niceStep(this.high - this.low, Math.max(1, Math.floor((bottom - top) / LINE)));
+    this.ticks = [];
+    for (let parts = Math.max(1, Math.floor((bottom - top) / LINE)); this.ticks.length < 2; parts++) this.divide(niceStep(this.high - this.low, parts));
+  }
+
+  divide(step) {
     this.digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-6));
     this.ticks = [];
     for (let n = Math.ceil(this.low / step - 1e-6); n * step <= this.high + step * 1e-6; n++) this.ticks.push(n * step);

@@ -109,9 +109,10 @@ export class CurvesView {
   drawCurves(drawing, scales) {
     const { curves } = this, labels = [];
     for (const { lines, side, color } of curves) {
-      for (const line of lines) {
-        const y = drawing.threshold(line, line.source && this.seriesOf(line.source), scales[side], color);
-        if (!Number.isNaN(y)) labels.push([`${line.source ? line.source.title : Number(line.value.toFixed(3))}: ${line.label}`, y, color]);
+      for (const { value, source, label } of lines) {
+        const shown = source ? valueAt(source, Math.min(this.axis.to, this.context.run.end)) : value;
+        const y = drawing.threshold(shown, source && { series: this.seriesOf(source), source, scale: 1 }, scales[side], color);
+        if (!Number.isNaN(y)) labels.push([`${Number(shown.toFixed(3))}${source ? ` ${source.name}` : ""}: ${label}`, y, color]);
       }
     }
     for (const curve of curves) drawing.curve(curve, scales[curve.side], curve.color);
