@@ -52,7 +52,8 @@ def unpacked(page: str) -> list[dict[str, Any]]:
 
 def test_the_page_holds_all_records_in_time_order() -> None:
     run = recording()
-    columns, *held = unpacked(replay_html(run))
+    columns, *held, story = unpacked(replay_html(run))
+    assert story["lines"][0]["text"] == "cleaner: pursued `clean(kitchen)`"
     assert held == msgspec.to_builtins(list(lines_of(run)))
     assert held[0]["world"]["name"] == "house"
     assert list(itertools.accumulate(columns["t"])) == [round(frame.t * 1000) for frame in run.frames]

@@ -10,7 +10,7 @@ import gzip
 import hashlib
 import html
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from operator import attrgetter
 from pathlib import Path
@@ -19,6 +19,8 @@ from typing import Any
 from jacaros.look.records.line_format import encoded
 from jacaros.look.records.recording import Recording
 from jacaros.look.records.records import VERSION, EventLine, RecordingLine, TextLine, WorldLine
+from jacaros.look.why.story import story_of
+from jacaros.look.why.tales import StoryLine
 from jacaros.runtime.errors import JacarosError
 
 STATIC = Path(__file__).parent / "static"
@@ -81,9 +83,22 @@ def title_of(recording: Recording) -> str:
 
 
 def packed(recording: Recording) -> str:
-    """Return the records of a recording in the format of the page: a line of frames, then a line for each other record."""
-    lines = b"\n".join(map(encoded, (frames(recording), *lines_of(recording))))
+    """Return the records of a recording in the format of the page: a line of frames, then a line for each other record,
+    and the story.
+    """
+    lines = b"\n".join(map(encoded, (frames(recording), *lines_of(recording), story_record(recording))))
     return base64.b64encode(gzip.compress(lines, 9, mtime=0)).decode("ascii")
+
+
+class StoryRecord(RecordingLine, tag="story"):
+    """The story of a run, which pages show first. Recordings do not have it."""
+
+    lines: Sequence[StoryLine]
+
+
+def story_record(recording: Recording) -> StoryRecord:
+    """Return the story of a recording as a record for a page."""
+    return StoryRecord(story_of(recording.events))
 
 
 def lines_of(recording: Recording) -> Iterator[RecordingLine]:

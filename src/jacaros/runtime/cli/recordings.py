@@ -2,13 +2,18 @@
 
 import asyncio
 import json
+from dataclasses import asdict
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from jacaros.runtime.cli.options import PATH, option, place_options
 from jacaros.runtime.cli.outputs import check_output, check_view
 from jacaros.runtime.cli.usage import examples, existing, read_recording, usage_error
+
+if TYPE_CHECKING:
+    from jacaros.look.records.recording import Recording
 
 # An event such as `-hidden(_)` must not be read as options, not even as -h.
 _QUESTIONS = {"ignore_unknown_options": True, "help_option_names": ["--help"]}
@@ -67,10 +72,15 @@ def view(run: Path, output: Path | None, view_port: int, view_address: str, view
 @click.command(
     "why",
     context_settings=_QUESTIONS,
-    epilog=examples("jacaros why run.jsonl did it dock", "jacaros why run.jsonl '+alarm(_)' --at 12.5"),
+    epilog=examples(
+        "jacaros why run.jsonl --story",
+        "jacaros why run.jsonl did it dock",
+        "jacaros why run.jsonl '+alarm(_)' --at 12.5",
+    ),
 )
 @click.argument("run", type=PATH)
-@click.argument("question", nargs=-1, required=True)
+@click.argument("question", nargs=-1)
+@option("--story", "Print the story of the run in at most ten lines instead of an answer.")
 @option(
     "--at T",
     "Answer for time T, in seconds since the start of the run (default: the end of the recording).",
@@ -80,9 +90,15 @@ def view(run: Path, output: Path | None, view_port: int, view_address: str, view
 @option("--robot R", "Consider only this robot.", default="", show_default=False)
 @option("--json", "Print the answer as JSON.", name="as_json")
 def why(
-    run: Path, question: tuple[str, ...], at: float | None, agent: str, robot: str, as_json: bool
+    run: Path,
+    question: tuple[str, ...],
+    story: bool,
+    at: float | None,
+    agent: str,
+    robot: str,
+    as_json: bool,
 ) -> None:
-    """Answer a QUESTION about RUN, a recording (`jacaros run FILE --record RUN`).
+    """Answer a QUESTION about RUN, a recording (`jacaros run FILE --record RUN`), or tell its story.
 
     \b
     why did it VERB ...                    what led to it: 'why did it go to the dock'
@@ -104,12 +120,27 @@ def why(
     """  # fmt: skip
     from jacaros.look.why.why import explain
 
+    if story and (question or agent or robot):
+        raise usage_error("--story takes no question, agent or robot", "pass only --at and --json with it")
+    if not story and not question:
+        raise usage_error("missing question", "ask one, such as `did it dock`, or pass --story")
     recording = read_recording(run)
+    if story:
+        _print_story(recording, at, as_json)
+        return
     if robot and robot not in recording.robots:
         known = ", ".join(recording.robots) or "none"
         raise usage_error(f"unknown robot: `{robot}`", f"robots in the recording: {known}")
     answer = explain(recording.events, " ".join(question), at, agent, robot)
     click.echo(json.dumps(answer.data(), ensure_ascii=False) if as_json else answer.text())
+
+
+def _print_story(recording: "Recording", at: float | None, as_json: bool) -> None:
+    from jacaros.look.why.story import story_of, story_text
+
+    lines = story_of(each for each in recording.events if at is None or each[0] <= at)
+    told = [asdict(each) for each in lines]
+    click.echo(json.dumps(told, ensure_ascii=False) if as_json else story_text(lines))
 
 
 @click.command(

@@ -8,7 +8,7 @@ from typing import Any
 
 from jacaros.look.page.live.commands import Commands, Text
 from jacaros.look.page.live.delivery import EVENTS, FRAMES, Backlog, Delivery, LiveRecord
-from jacaros.look.page.page import lines_of, title_of
+from jacaros.look.page.page import lines_of, story_record, title_of
 from jacaros.look.page.scene import RobotView
 from jacaros.look.records import records
 from jacaros.look.records.recording import Recording
@@ -51,6 +51,7 @@ class LiveView:
         # In time order; at equal times frames come first.
         for record in (world, *merge(recording.frames, others, key=attrgetter("t"))):
             view.take(record)
+        view.take(story_record(recording))
         return view
 
     # ---- records of the watch

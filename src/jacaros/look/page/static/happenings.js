@@ -22,7 +22,7 @@ const WORDS = {
 const FAILURES = new Set(["bump", "collision", "fault", "fell", "battery_empty", "command_timeout"]);
 
 /** The sorts of marks on the timeline: class, and name in the legend. */
-export const SORTS = { failure: "failure", task: "task done", docked: "docked", intervention: "your change", pause: "paused" };
+export const SORTS = { failure: "failure", handled: "failure that a plan handled", task: "task done", docked: "docked", intervention: "your change", pause: "paused" };
 
 /** An event in words, undefined when people do not read it. */
 export function inWords(event, data, severalRobots) {
@@ -40,6 +40,12 @@ export function sortOf(event, data) {
   if (event === "log") return data.level === "error" ? "failure" : undefined;
   if (event === "debug") return data.state === "paused" ? "pause" : undefined;
   return event === "docked" || event === "task" || event === "intervention" ? event : undefined;
+}
+
+/** How loud a line of the log is: a lost goal as loud as a failure of a robot. */
+export function toneOf(event, { level, text }) {
+  if (event !== "log" || level === "info") return undefined;
+  return level === "error" || text.includes("has no plan for its failure") ? "failure" : "warning";
 }
 
 /** The text of a mark. */

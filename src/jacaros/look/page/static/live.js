@@ -46,8 +46,10 @@ class Connection {
   constructor() {
     this.commands = new Commands();
     this.wait = FIRST_WAIT;
+    this.heard = Date.now();
     this.begin();
     this.connect();
+    setInterval(() => { if (this.page.time.lost) this.page.time.notify(); }, 1000);
   }
 
   begin() {
@@ -71,13 +73,19 @@ class Connection {
 
   lose() {
     this.commands.disconnect();
-    if (this.page.run.over) { this.page.notice("The run has ended. You can still go back in time."); return; }
-    this.page.notice("Connection to the run lost. Reconnecting …");
+    if (this.page.run.over) {
+      this.page.time.end(null);
+      this.page.notice("The run has ended. You can still go back in time.");
+      return;
+    }
+    this.page.time.end(this.heard);
+    document.body.classList.add("stale");
     setTimeout(() => this.connect(), this.wait * 1000);
     this.wait = Math.min(LONGEST_WAIT, this.wait * 2);
   }
 
   receive(message) {
+    this.heard = Date.now();
     if (Array.isArray(message)) this.page.run.addAll(message);
     else if (message.kind === "hello") this.greet(message);
     else if (message.kind === "can") this.commands.allow(message.can);

@@ -1,5 +1,6 @@
+import { Failures } from "./failures.js";
 import { indexAt } from "./track.js";
-import { inWords, markText, sortOf } from "./happenings.js";
+import { inWords, markText, sortOf, toneOf } from "./happenings.js";
 
 const LINES = 100000;  // that are kept: a live page may be open for days
 const MARKS = 20000;
@@ -12,6 +13,7 @@ export class Log {
     this.entries = [];  // t, who (an agent or ""), text, sort, robot
     this.marks = [];  // t, sort, text, and the selection that it leads to
     this.robots = new Set();
+    this.failures = new Failures();
   }
 
   add(t, event, data) {
@@ -24,9 +26,11 @@ export class Log {
       if (data.state === this.debugState) return;
       this.debugState = data.state;
     }
+    const failure = event === "goal" ? this.failures.add(t, data) : null;
     const words = inWords(event, data, several), sort = sortOf(event, data);
-    if (words) this.enter({ t, who: "", text: words, sort: sort ?? "world", robot: data.robot });
-    if (sort) this.marks.push({ t, sort, text: markText(event, data, several), leads: leads(data) });
+    if (words) this.enter({ t, ...said(words), sort: toneOf(event, data) ?? sort ?? "world", robot: data.robot });
+    // Whether a plan handles a failure is known a record later.
+    if (sort) this.marks.push({ t, get sort() { return failure?.handled ? "handled" : sort; }, text: markText(event, data, several), leads: leads(data) });
     if (this.marks.length > MARKS) this.marks.splice(0, MARKS >> 2);
   }
 
@@ -40,6 +44,12 @@ export class Log {
 
   /** How many entries there are up to time `t`. */
   countAt(t) { return indexAt(this.times, t) + 1; }
+}
+
+/** The agent and the text of a line of the log, such as "[guard] warning: the goal !go failed". */
+function said(words) {
+  const [, who = "", text] = /^(?:\[([^\]]+)\] )?(?:(?:warning|error): )?([^]*)$/.exec(words);
+  return { who, text };
 }
 
 function leads({ agent, robot, intention }) {

@@ -53,7 +53,8 @@ export class LogView {
   line(entry) {
     const text = element("span", "text");
     if (entry.who) text.append(element("span", "who", entry.who), " ");
-    text.append(entry.text);
+    const [first, ...rest] = entry.text.split("\n");
+    text.append(first, ...(rest.length ? [element("span", "rest", `\n${rest.join("\n")}`)] : []));
     const line = button("line", () => this.choose(entry), element("time", "", clock(entry.t)), text);
     line.tabIndex = -1;
     return element("li", entry.sort, line);

@@ -14,6 +14,8 @@ import { Environment } from "./environment.js";
 import { Fleet } from "./fleet.js";
 import { FleetView } from "./fleet_view.js";
 import { GraphView } from "./graph_view.js";
+import { Headline } from "./headline.js";
+import { HeadlineView } from "./headline_view.js";
 import { listenToKeys } from "./keys.js";
 import { Lanes } from "./lanes.js";
 import { LanesView } from "./lanes_view.js";
@@ -33,6 +35,7 @@ import { RobotsView } from "./robots_view.js";
 import { Run } from "./run.js";
 import { SeriesSources } from "./series_sources.js";
 import { Selection } from "./selection.js";
+import { Story, StoryView } from "./story.js";
 import { Tabs } from "./tabs.js";
 import { Time } from "./time.js";
 import { TimeAxis } from "./time_axis.js";
@@ -60,7 +63,8 @@ export function startPage({ live, commands }) {
   const world = new World(), links = new Links(), log = new Log(), minds = new Minds();
   const environment = new Environment(), messages = new Messages(), causes = new Causes(), debugging = new Debugging(), fleet = new Fleet(), lanes = new Lanes();
   const sources = new SeriesSources(world), thresholds = new CurveThresholds(minds, sources), refusals = new Refusals();
-  const models = [world, links, log, minds, environment, messages, causes, debugging, fleet, sources, thresholds, refusals, lanes];
+  const story = new Story();
+  const models = [story, world, links, log, minds, environment, messages, causes, debugging, fleet, sources, thresholds, refusals, lanes];
   const run = new Run(models), selection = new Selection(), time = new Time(run, live);
   const context = { run, selection, commands, time, open: (panel) => tabs.open(panel), actions: new Actions(), axis: new TimeAxis(time) };
   context.curves = new CurveChoice(sources, thresholds, time);
@@ -68,6 +72,7 @@ export function startPage({ live, commands }) {
   const at = (id) => document.getElementById(id);
 
   const tabs = new Tabs(at("tabs"), [
+    [at("story"), new StoryView(at("story"), context, story)],
     [at("agents"), new AgentsView(at("agents"), context, { minds, links })],
     [at("program"), new ProgramView(at("program"), context, minds)],
     [at("artifacts"), new ArtifactsView(at("artifacts"), context, environment)],
@@ -78,7 +83,9 @@ export function startPage({ live, commands }) {
   ], context);
   const tools = new WorldTools(at("tools"), context, world);
   const map = new MapView(at("map"), context, world, links, tools);
+  const headline = new Headline({ log, minds, world, fleet, run, time, story });
   const beside = [
+    [at("headline"), new HeadlineView(at("headline"), context, { headline, minds, causes })],
     [at("questions"), new QuestionsView(at("questions"), context, environment)],
     [at("tools"), tools],
     [at("controls"), new ControlsView(at("controls"), context, { debugging, minds })],
@@ -100,6 +107,11 @@ export function startPage({ live, commands }) {
   at("theme").addEventListener("click", () => {
     page.chooseTheme(isDark() ? "light" : "dark");
     remember("theme", document.documentElement.dataset.theme);
+  });
+  story.onTold(() => {  // a replay opens with its story, at the first failure
+    if (time.canBeLive || fragment().has("t")) return;
+    tabs.chosen = "story";
+    time.go(story.lines.find(({ level }) => level === "error")?.t ?? 0);
   });
   page.begin();
   return page;

@@ -39,7 +39,7 @@ const page = startPage({ live: false, commands: NO_COMMANDS });
 page.setTitle(document.title);
 try {
   page.run.addAll(await records());
-  page.time.go(Number(fragment().get("t")) || 0);
+  if (fragment().has("t")) page.time.go(Number(fragment().get("t")) || 0);
   page.show();
 } catch (error) {
   const old = typeof DecompressionStream === "undefined";

@@ -48,7 +48,9 @@ export class RobotsView {
     if (state === null) return;
     const level = Math.round(state.battery), agents = this.links.agents(card.name, t);
     card.dot.style.background = robotColor(index);
-    setText(card.level, level < 0 ? "" : `${level} %`);
+    const isFlat = level === 0 && !state.charging;
+    card.root.classList.toggle("flat", isFlat);
+    setText(card.level, level < 0 ? "" : isFlat ? "⚠ 0 %" : `${level} %`);
     card.gauge.hidden = level < 0;
     card.gauge.setAttribute("aria-valuenow", String(level));
     card.fill.style.width = `${Math.max(0, state.battery)}%`;

@@ -39,7 +39,8 @@ export class Run {
     if (event === undefined) return;
     this.count += 1;
     if (t > this.end) this.end = t;
-    if (event === "ended") this.over = true;
+    if (event === "run") this.ros = data.ros;
+    if (event === "ended") Object.assign(this, { over: true, code: data.code });
     if (record.kind === "world") this.version = record.version ?? 1;
     for (const model of this.models) {
       try { model.add(t, event, data); } catch (error) { this.reject(event, error); }
@@ -63,6 +64,7 @@ function content(record) {
     case "world": return ["world", record.world ?? {}];
     case "frame": return ["frame", record.robots ?? []];
     case "text": return ["text", { agent: record.agent, text: record.text }];
+    case "story": return ["story", record.lines ?? []];
     case "event": return [record.event, record.data ?? {}];
     default: return [];
   }

@@ -12,6 +12,7 @@ export class Time {
     this.now = 0;
     this.live = live;
     this.canBeLive = live;
+    this.lost = null;  // when the last message of a run came whose connection is lost, by Date.now()
     this.playing = false;
     this.speed = 1;
     this.listeners = new Set();
@@ -36,6 +37,12 @@ export class Time {
     this.playing = false;
     this.live = this.canBeLive;
     this.now = this.run.end;
+    this.notify();
+  }
+
+  /** The run sends nothing more: its last message came at `heard`, or null when it has ended. */
+  end(heard) {
+    Object.assign(this, { lost: heard, live: false, canBeLive: false });
     this.notify();
   }
 

@@ -59,7 +59,9 @@ export class TimelineView {
     setText(this.play, time.playing ? PAUSE : PLAY);
     this.play.setAttribute("aria-label", time.playing ? "Pause the replay" : "Play");
     this.play.hidden = time.live;
-    this.onAir.hidden = !time.live;
+    this.onAir.hidden = !time.live && !time.lost;
+    setText(this.onAir, time.lost ? "Connection lost" : "Live");
+    this.onAir.classList.toggle("lost", Boolean(time.lost));
     this.live.hidden = !time.canBeLive || time.live;
     this.speedLabel.hidden = time.live;
     this.showMarks();

@@ -1,0 +1,56 @@
+import { button, clock, element } from "./elements.js";
+import { moveByArrows, refill, keyed } from "./refill.js";
+
+const SIGNS = { error: "✖", warning: "⚠", note: "" };
+
+/** The story of a recorded run: lines with `t`, `text`, `level`, `count`, `until`, `agent` and `robot`. */
+export class Story {
+  constructor() {
+    this.lines = [];
+    this.listener = () => {};
+  }
+
+  /** Call `listener` as soon as the story is there, after the records. */
+  onTold(listener) { this.listener = listener; }
+
+  add(t, event, lines) {
+    if (event !== "story") return;
+    this.lines = lines;
+    queueMicrotask(() => this.listener());
+  }
+}
+
+/** The story, each line with the way to its moment. */
+export class StoryView {
+  constructor(root, context, story) {
+    Object.assign(this, { root, context, story });
+    this.list = element("ol", "story");
+    this.list.setAttribute("aria-label", "What happened in this run. Each line goes to its moment.");
+    root.append(this.list);
+    moveByArrows(this.list, ".moment");
+  }
+
+  get empty() { return this.story.lines.length === 0; }
+
+  show(t) {
+    const now = this.story.lines.filter((line) => line.t <= t + 0.05).length - 1;
+    if (now === this.now) return;
+    this.now = now;
+    refill(this.list, this.story.lines.map((line, n) => this.line(line, n)));
+  }
+
+  line({ t, text, level, count, until, agent, robot }, n) {
+    const folded = [count > 1 ? `${count} times` : "", until ? `until ${clock(until)}` : ""].filter(Boolean).join(", ");
+    const made = button("moment", () => {
+      this.context.time.go(t);
+      if (agent || robot) this.context.selection.choose(agent ? { agent } : { robot });
+    }, element("time", "", clock(t)), element("i", "sign", SIGNS[level] ?? ""), element("span", "", ...coded(text), folded ? element("span", "folded", `\u2002${folded.replaceAll(" ", "\u00a0")}`) : ""));
+    if (level !== "note") made.setAttribute("aria-label", `${clock(t)} ${level}: ${text} ${folded}`);
+    return element("li", `${level}${n === this.now ? " now" : ""}`, keyed(`story ${n}`, made));
+  }
+}
+
+/** A text of which the parts in backquotes are code. */
+export function coded(text) {
+  return text.split("`").map((part, n) => (n % 2 ? element("code", "", part) : part));
+}

@@ -1,0 +1,403 @@
+"""What happened in a run, folded into tales: events of one kind are one tale with their number.
+
+So twelve hours of patrol and one failure are two tales. `Rank` orders them by what matters first.
+"""
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from enum import IntEnum
+from typing import Any, Literal
+
+from jacaros.look.records.records import Data
+from jacaros.look.why.about_now import ending_step
+from jacaros.look.why.chains import shown
+from jacaros.look.why.past import AT_ONCE, Past
+from jacaros.look.why.patterns import name_of
+
+MOST_NAMES = 3
+"""Maximum number of agents, robots or goals that a line names."""
+MOST_PURSUITS = 3
+"""Number of goals, those that were pursued longest, that come before faults and failures that a plan handled."""
+LASTING = 1.0
+"""Seconds from which on a goal is more than setup."""
+LONG = 5.0
+"""Seconds from which on a robot that is wrong about its pose, or an agent without a goal, is worth a line."""
+LONGEST = 160
+"""Maximum number of characters of a reason."""
+
+Level = Literal["error", "warning", "note"]
+Key = tuple[str, Any]
+"""An agent and its intention."""
+
+
+class Rank(IntEnum):
+    """What matters first: tales of a lower rank stay when there are too many."""
+
+    END = 0
+    LOSS = 1
+    PURSUIT = 2
+    FAULT = 3
+    TROUBLE = 4
+    HANDLED = 5
+    ROUTINE = 6
+
+
+@dataclass(frozen=True, slots=True)
+class StoryLine:
+    """A line of a story.
+
+    Attributes:
+        t: seconds since the run began; of several events, of the first one.
+        text: what happened, and to whom.
+        level: ``error``, ``warning`` or ``note``.
+        count, until: number of the events that are folded into this line, and the time of the last one.
+        agent, robot: what it concerns, if that is one.
+    """
+
+    t: float
+    text: str
+    level: Level
+    count: int = 1
+    until: float | None = None
+    agent: str = ""
+    robot: str = ""
+
+
+@dataclass
+class Tale:
+    """Events of one kind.
+
+    Attributes:
+        goals, states: of a pursuit, its goals, and how they ended.
+        lasts: whether it lasts from the first event to the last one.
+    """
+
+    rank: Rank
+    t: float
+    text: str
+    level: Level = "note"
+    robot: str = ""
+    lasts: bool = False
+    count: int = 1
+    last: float = 0.0
+    who: dict[str, None] = field(default_factory=dict)
+    goals: dict[str, None] = field(default_factory=dict)
+    states: set[str] = field(default_factory=set)
+
+    @property
+    def weight(self) -> tuple[Rank, float]:
+        """What matters first has the least: of failures the first one, otherwise what lasted longest."""
+        return self.rank, self.t if self.level != "note" else self.t - self.last
+
+    def line(self) -> StoryLine:
+        """Return it as a line of the story."""
+        text = self._pursuit() if self.goals else self.text
+        text = f"{_names([*self.who])}: {text}" if self.who else text
+        has_end = (self.count > 1 or self.lasts) and self.last > self.t
+        single = next(iter(self.who)) if len(self.who) == 1 else ""
+        return StoryLine(
+            round(self.t, 3),
+            text,
+            self.level,
+            self.count if self.count > len(self.who) and not self.goals else 1,
+            round(self.last, 3) if has_end else None,
+            "" if self.robot else single,
+            self.robot if single else "",
+        )
+
+    def _pursuit(self) -> str:
+        """Return what was pursued in words; rounds of a loop by their name, because they differ in their arguments."""
+        verb = "achieved" if self.states == {"achieved"} else "pursued"
+        goal = shown(next(iter(self.goals)))
+        if len(self.goals) > 1:
+            goal = f"!{name_of(goal)}"
+        rounds = f", {self.count} rounds" if self.count > len(self.who) else ""
+        return f"{verb} `{goal}`{rounds}"
+
+
+@dataclass
+class _Pursuit:
+    """An open root goal of an intention: its goals by number, and its tale."""
+
+    stack: dict[Any, str]
+    tale: Tale
+
+
+@dataclass
+class _Failure:
+    """The goals of an intention that failed together by number, the inner ones first."""
+
+    t: float
+    why: str
+    goals: dict[Any, str] = field(default_factory=dict)
+
+
+class Teller:
+    """Takes the records of a run and folds them into tales."""
+
+    def __init__(self) -> None:
+        self._tales: dict[tuple[str, str], Tale] = {}
+        self._pursuits: dict[Key, _Pursuit] = {}
+        self._failures: dict[Key, _Failure] = {}
+        self._open: dict[str, set[Any]] = {}
+        self._idle: dict[str, float] = {}
+        """Since when agents have no intention; those that have one are in *_open*."""
+        self._dropped: list[tuple[float, str, str]] = []
+        self._warnings: list[tuple[float, Data]] = []
+        self._take: Mapping[str, Callable[[float, Data], None]] = {
+            "goal": self._goal,
+            "intention": self._intention,
+            "log": lambda t, data: self._warnings.append((t, data)),
+            "agent": self._agent,
+            "member": self._member,
+            "believed": self._believed,
+            "fault": self._fault,
+            "property": self._property,
+            "intervention": self._intervention,
+        }
+
+    def take(self, t: float, event: str, data: Data) -> None:
+        """Take the next record."""
+        if event in self._take:
+            self._take[event](t, data)
+        elif event in _WORLD:
+            rank, level, text = _WORLD[event]
+            self._tell(event, rank, t, text.format_map(data), level, robot=str(data.get("robot") or ""))
+
+    def tales(self, past: Past) -> list[Tale]:
+        """Return all tales; *past* has the programs, and how the run ended."""
+        for key, failure in self._failures.items():
+            self._lose(key, failure)
+        self._tell_warnings()
+        for pursuit in self._pursuits.values():
+            pursuit.tale.last = past.end
+            pursuit.tale.states.add("open")
+        pursuits = [each for each in self._tales.values() if each.goals]
+        pursuits.sort(key=lambda each: each.weight)
+        for each in pursuits[:MOST_PURSUITS]:
+            each.rank = Rank.PURSUIT
+        setup = [each for each in pursuits[1:] if each.last - each.t < LASTING]
+        return [*(each for each in self._tales.values() if each not in setup), self._end(past)]
+
+    def _tell(
+        self,
+        kind: str,
+        rank: Rank,
+        t: float,
+        text: str,
+        level: Level = "note",
+        who: str = "",
+        robot: str = "",
+        about: str | None = None,
+    ) -> Tale:
+        """Add to the tale of a kind and a text, or *about* in its place."""
+        key = kind, text if about is None else about
+        known = self._tales.get(key)
+        if known is None:
+            known = self._tales[key] = Tale(rank, t, text, level, robot)
+        else:
+            known.count += 1
+        known.last = t
+        if who or robot:
+            known.who[who or robot] = None
+        return known
+
+    # ---- goals
+
+    def _goal(self, t: float, data: Data) -> None:
+        state, goal, number = data["state"], data["goal"], data.get("id")
+        key: Key = data["agent"], data.get("intention") or f"goal {number}"
+        failure = self._failures.get(key)
+        if failure is not None and (state != "failed" or t > failure.t):
+            del self._failures[key]
+            # A goal with a plan for its failure is pursued again.
+            is_handled = number in failure.goals and state in ("pursued", "recovered")
+            (self._handle if is_handled else self._lose)(key, failure)
+        if state == "pursued":
+            self._begin(t, key, number, goal)
+        elif state == "failed":
+            self._failures.setdefault(key, _Failure(t, data.get("why") or "")).goals[number] = goal
+        elif state not in ("suspended", "resumed"):
+            self._close(t, key, number, state)
+
+    def _begin(self, t: float, key: Key, number: Any, goal: str) -> None:
+        self._open.setdefault(key[0], set()).add(key[1])
+        if key not in self._pursuits:
+            tale = self._tell("goal", Rank.ROUTINE, t, "", who=key[0], about=name_of(goal))
+            tale.lasts = True
+            tale.goals[goal] = None
+            self._pursuits[key] = _Pursuit({}, tale)
+        self._pursuits[key].stack[number] = goal
+
+    def _close(self, t: float, key: Key, number: Any, state: str) -> None:
+        pursuit = self._pursuits.get(key)
+        if pursuit is None or number not in pursuit.stack:
+            return
+        if number == next(iter(pursuit.stack)):
+            if state == "dropped":
+                self._dropped.append((t, key[0], pursuit.stack[number]))
+            self._end_intention(t, key, state)
+        else:
+            del pursuit.stack[number]
+
+    def _end_intention(self, t: float, key: Key, state: str = "") -> None:
+        pursuit = self._pursuits.pop(key, None)
+        if pursuit is not None:
+            pursuit.tale.last = t
+            pursuit.tale.states.update({state} - {"replaced"})
+        intentions = self._open.get(key[0], set())
+        intentions.discard(key[1])
+        if not intentions:
+            self._idle[key[0]] = t
+
+    def _handle(self, key: Key, failure: _Failure) -> None:
+        because, goal = reason(failure.why), [*failure.goals.values()][-1]
+        told = f"`{_cut(shown(goal))}` failed: {because}; a plan handled it"
+        # Goals that fail for one reason, one after the other, are one tale.
+        self._tell("handled", Rank.HANDLED, failure.t, told, "warning", key[0], about=_pattern(because))
+
+    def _lose(self, key: Key, failure: _Failure) -> None:
+        because, goal = reason(failure.why), [*failure.goals.values()][-1]
+        told = f"`{_cut(shown(goal))}` failed{f': {because}' if because else ''}"
+        about = f"{name_of(goal)} {_pattern(because)}"
+        self._tell("lost", Rank.LOSS, failure.t, told, "error", key[0], about=about)
+        self._end_intention(failure.t, key)
+
+    def _intention(self, t: float, data: Data) -> None:
+        if data["state"] == "over":
+            self._end_intention(t, (data["agent"], data["id"]))
+        else:
+            self._open.setdefault(data["agent"], set()).add(data["id"])
+
+    # ---- the rest of the run
+
+    def _tell_warnings(self) -> None:
+        """Tell the warnings that no failed goal has told."""
+        lost = [
+            (tale.t - AT_ONCE, tale.last + AT_ONCE) for key, tale in self._tales.items() if key[0] == "lost"
+        ]
+        for t, data in self._warnings:
+            found = _WARNING.match(data["text"])
+            is_loss = found is not None and _LOST in data["text"]
+            if data["level"] == "info" or (is_loss and any(first <= t <= last for first, last in lost)):
+                continue
+            who, text = (found[1], found[2]) if found is not None else ("", data["text"].partition("\n")[0])
+            if is_loss:
+                text = f"{text.partition(_LOST)[0]}: {reason(text)}"
+            level: Level = "error" if is_loss else data["level"]
+            rank = Rank.LOSS if level == "error" else Rank.TROUBLE
+            self._tell("log", rank, t, _cut(text), level, who, about=_pattern(text))
+
+    def _agent(self, t: float, data: Data) -> None:
+        if data["state"] == "ended":
+            self._open.pop(data["agent"], None)
+            self._idle.pop(data["agent"], None)
+        else:
+            self._idle.setdefault(data["agent"], t)
+
+    def _member(self, t: float, data: Data) -> None:
+        if data["state"] == "lost":
+            text = "did not answer; it is a system of the fleet"
+            self._tell("member", Rank.FAULT, t, text, "error", data["member"], about=data["member"])
+
+    def _fault(self, t: float, data: Data) -> None:
+        text, robot = (
+            f"fault `{data['fault']}` ({data['kind'].replace('_', ' ')})",
+            str(data.get("robot") or ""),
+        )
+        if data["state"] != "ends":
+            self._tell("fault", Rank.FAULT, t, text, "warning", robot=robot).lasts = True
+        elif (begun := self._tales.get(("fault", text))) is not None:
+            begun.last = t
+
+    def _believed(self, t: float, data: Data) -> None:
+        """Tell of a robot that is wrong about its pose. The record is repeated while it is, then once without a pose."""
+        if data.get("x") is not None:
+            text = "was not where it believed to be"
+            tale = self._tell("believed", Rank.ROUTINE, t, text, robot=data["robot"])
+            tale.count, tale.lasts = 1, True
+            if tale.last - tale.t >= LONG:
+                tale.rank, tale.level = Rank.TROUBLE, "warning"
+
+    def _property(self, t: float, data: Data) -> None:
+        """Tell of a question to a person: the values are its number, its text and the options."""
+        if data["name"] == "question" and len(data["values"] or ()) > 1:
+            self._tell(
+                "question", Rank.FAULT, t, f"a person was asked: {_cut(str(data['values'][1]))}", "warning"
+            )
+
+    def _intervention(self, t: float, data: Data) -> None:
+        self._tell("intervention", Rank.FAULT, t, f"you changed the run: {data['what']}")
+
+    # ---- the end
+
+    def _end(self, past: Past) -> Tale:
+        code, step = past.exit_code, ending_step(past)
+        because = f", because {step.agent} ran {step.text}" if step is not None else ""
+        parts = [f"the run ended with exit code {code}{because}"]
+        if code is None:
+            parts = ["the recording stops before the end of the run"]
+        quiet = [each for each, t in self._idle.items() if past.end - t >= LONG and not self._open.get(each)]
+        lost = {
+            name for key, tale in self._tales.items() if key[0] == "lost" for name in tale.who
+        }.intersection(quiet)
+        if idle := [each for each in quiet if each in lost] or quiet:
+            since = min(past.end - self._idle[each] for each in idle)
+            parts.append(f"{_names(idle)} had no goal for the last {_duration(since)}")
+        ended = {(agent, goal) for t, agent, goal in self._dropped if past.end - t <= AT_ONCE}
+        ended |= {(key[0], next(iter(each.stack.values()))) for key, each in self._pursuits.items()}
+        if ended:
+            agents = len({agent for agent, _ in ended})
+            by = f" by {agents} agents" if agents > 1 else ""
+            parts.append(f"still wanted{by}: {_names(sorted({f'`{shown(goal)}`' for _, goal in ended}))}")
+        level: Level = "warning" if code is None else "error" if code or lost else "note"
+        return Tale(Rank.END, past.end, "; ".join(parts), level)
+
+
+_WORLD: Mapping[str, tuple[Rank, Level, str]] = {
+    "battery_empty": (Rank.LOSS, "error", "the battery is empty"),
+    "fell": (Rank.LOSS, "error", "fell down a cliff"),
+    "bump": (Rank.TROUBLE, "warning", "bumped into a wall, {side}"),
+    "collision": (Rank.TROUBLE, "warning", "collided with {with}, {side}"),
+    "command_timeout": (Rank.TROUBLE, "warning", "stopped, because no commands arrived"),
+    "charged": (Rank.ROUTINE, "note", "charged its battery"),
+    "task": (Rank.ROUTINE, "note", "did {task}"),
+}
+"""Events of the world that are part of a story."""
+
+_LOST = " failed and has no plan for its failure"
+_WARNING = re.compile(r"\[([^\]]+)\] (?:warning: |error: )?(.*)")
+_NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+_NOISE = re.compile(
+    rf"^.*{_LOST}: |^\w+, (?=\S)|^(?:action|operation) \S+ .*?(?:was aborted|failed)(?: with code -?\d+)?: "
+)
+_PLACE = re.compile(r" \(\S+:\d+\)$")
+
+
+def reason(why: str) -> str:
+    """Return why a goal failed in its shortest words: without the name of the error, the action and the place."""
+    words = _PLACE.sub("", why.partition("\n")[0])
+    for _ in range(3):  # each may be behind another
+        words = _NOISE.sub("", words)
+    return _cut(words)
+
+
+def _pattern(text: str) -> str:
+    return _NUMBER.sub("#", text)
+
+
+def _names(names: Iterable[str]) -> str:
+    first = [*names]
+    more = f" and {len(first) - MOST_NAMES} more" if len(first) > MOST_NAMES else ""
+    return ", ".join(first[:MOST_NAMES]) + more
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..."
+
+
+def _duration(t: float) -> str:
+    if t < 120:
+        return f"{t:.0f} s"
+    return f"{t / 60:.0f} min" if t < 7200 else f"{t / 3600:.1f} h"
