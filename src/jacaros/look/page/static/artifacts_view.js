@@ -1,6 +1,7 @@
 import { button, element, setText } from "./elements.js";
 import { propertyText } from "./environment.js";
 import { momentButton, showWhy, whyButton } from "./jumps.js";
+import { shortName } from "./link_words.js";
 import { Picker } from "./picker.js";
 import { keyed, moveByArrows } from "./refill.js";
 import { Section, age } from "./section.js";
@@ -49,7 +50,8 @@ export class ArtifactsView {
     if (!shown) return;
     this.picker.show(this.items, this.chosen);
     setText(this.name, shown.name);
-    setText(this.about, [shown.type, shown.robot ? `of ${shown.robot}` : "", shown.isThere(t) ? "" : "disposed"].filter(Boolean).join(" · "));
+    this.about.title = shown.type;
+    setText(this.about, [shortName(shown.type), shown.robot ? `of ${shown.robot}` : "", shown.isThere(t) ? "" : "disposed"].filter(Boolean).join(" · "));
     this.form.hidden = this.result.hidden = !this.context.commands.can.has("operate");
     for (const section of this.sections) section.show(shown, t);
   }
