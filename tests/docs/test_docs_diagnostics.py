@@ -13,7 +13,14 @@ from jacaros.runtime.cli.main import call
 PAGE = ROOT / "docs" / "reference" / "diagnostics.md"
 EXAMPLES = [block for block in blocks(PAGE) if block.purpose.startswith(("wrong ", "right "))]
 OF_FILES = {
-    *("not-imported", "too-many", "no-effect", "plan-too-large", "unknown-artifact-type"),
+    *(
+        "goal-never-posted",
+        "not-imported",
+        "too-many",
+        "no-effect",
+        "plan-too-large",
+        "unknown-artifact-type",
+    ),
     *("unknown-message-type", "unknown-operation", "unknown-property", "unknown-resource", "unreadable-file"),
     *("wrong-mapping", "wrong-world", "wrong-project"),
 }

@@ -65,9 +65,21 @@ def unknown_actions(program: nodes.Program, found: ByKind, known: KnownActions) 
         if is_atom or known.is_unseen(name):
             continue
         if name not in hints:
-            meant = known.help(name) or suggestion(name, known.declared) if len(hints) < MOST_ASKED else None
-            hints[name] = meant or None
+            hints[name] = _meant_action(node, found, known) or None if len(hints) < MOST_ASKED else None
         yield problem("unknown-internal-action", f"unknown internal action `{name}`", node.span, hints[name])
+
+
+def _meant_action(call: nodes.InternalAction, found: ByKind, known: KnownActions) -> str:
+    goal = ("!", call.name.removeprefix("."), len(call.arguments))
+    for trigger in found.of(nodes.Trigger):
+        literal = trigger.literal
+        if isinstance(literal, nodes.Literal) and goal == (
+            trigger.kind,
+            literal.functor,
+            len(literal.arguments),
+        ):
+            return did_you_mean([f"!{literal.functor}"])
+    return known.help(call.name) or suggestion(call.name, known.declared)
 
 
 def wrong_arguments(found: ByKind, known: KnownActions) -> Iterator[Diagnostic]:
@@ -110,7 +122,8 @@ def acting_conditions(found: ByKind, known: KnownActions) -> Iterator[Diagnostic
                     yield problem("acting-condition", message, part.span, "make it a step of the body")
 
 
-_PRINTING: Final = frozenset({".print", ".println", ".printf"})
+PRINTING: Final = frozenset({".print", ".println", ".printf"})
+"""Internal actions that only print."""
 _SHORT: Final = 10
 """Milliseconds: a shorter `.wait` was probably meant in seconds."""
 
@@ -123,7 +136,7 @@ def doubtful_values(found: ByKind) -> Iterator[Diagnostic]:
             time = f"{first.value:g}"
             help = f"for {time} s write `.wait({first.value * 1000:g})`"
             yield problem("short-wait", f"`.wait({time})` waits for {time} ms", first.span, help)
-        for word in node.arguments if node.name in _PRINTING else ():
+        for word in node.arguments if node.name in PRINTING else ():
             if isinstance(word, nodes.Literal) and word.functor.startswith("'") and not word.arguments:
                 text = word.functor.strip("'")
                 message = f"`{word.functor}` is an atom, which is printed with its quotes"

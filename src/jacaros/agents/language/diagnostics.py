@@ -173,14 +173,14 @@ _CODES: Final[dict[Severity, str]] = {
     "warning": """
         acting-condition capital-constant changed-variable comparison-without-value
         condition-as-step context-never-true event-never-happens java-function loop-without-wait misspelt-annotation
-        misspelt-belief never-matches no-effect ordered-atom organisation-library plan-never-selected
-        plan-too-large singleton-variable too-many unknown-artifact-type unknown-belief unknown-code unknown-goal
-        unknown-internal-action unknown-library unknown-message-type unknown-operation
-        unknown-performative unknown-property unknown-resource wrong-arguments wrong-needs wrong-supervision
-        wrong-unit wrong-urgency
+        misspelt-belief missing-mark never-matches no-effect ordered-atom organisation-library
+        plan-never-selected plan-too-large singleton-variable too-many unknown-artifact-type
+        unknown-belief unknown-code unknown-goal unknown-internal-action unknown-library
+        unknown-message-type unknown-operation unknown-performative unknown-property unknown-resource
+        unused-handler wrong-arguments wrong-needs wrong-supervision wrong-unit wrong-urgency
     """,
     "note": """
-        narrow-handler not-imported quoted-atom short-wait
+        goal-never-posted narrow-handler not-imported quoted-atom short-wait
     """,
 }
 """The codes of diagnostics, by their usual level: what the thesis prints and Jason rejects is only a warning in programs of

@@ -161,6 +161,26 @@ def test_actions_of_a_lone_program_are_checked_where_it_has_artifacts(
     assert [each.message for each in check(folder, program, "")] == told
 
 
+def test_marks_of_goals_and_operations_are_told_apart(folder: Path) -> None:
+    program = "!go.\n+!go <- rest; wait(3); !inc; !println(a).\n+!rest <- inc."
+    assert [(each.message, each.help) for each in check(folder, program)] == [
+        (unknown("rest/0"), "did you mean `!rest`?"),
+        (unknown("wait/1"), "did you mean `.wait`?"),
+        ("no plan for `!inc/0`", "to call the operation, write `inc` without `!`"),
+        ("no plan for `!println/1`", "to call the operation, write `println` without `!`"),
+        ("no agent of the project posts `!rest/0`", REST),
+    ]
+
+
+REST = "post it, or remove the plan; from outside, such as from the page, it can still be posted"
+
+
+def test_an_operation_of_a_shipped_mapping_is_known_by_its_file(folder: Path) -> None:
+    (found,) = check(folder, "!go.\n+!go <- dock_at(home).")
+    assert found.help == "the shipped mapping `nav2.yaml` has it; run with `--mapping nav2.yaml`"
+    assert check(folder, '!go.\n+!go <- makeArtifact("c", "Counter"); dock_at(home).', "") == []
+
+
 def test_a_mapping_file_that_a_goal_names_is_checked(folder: Path) -> None:
     (folder / "robot.yaml").write_text(
         "properties:\n  pose:\n    topic: odom\n    type: nav_msgs/msg/Odometry\n    rat: 2\n",

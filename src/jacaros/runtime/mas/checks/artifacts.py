@@ -6,14 +6,19 @@ operations at run time, and an agent architecture may run actions itself.
 """
 
 import inspect
+import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from jacaros.agents.body.body import keys
 from jacaros.agents.checks.annotations import needs_of
 from jacaros.agents.checks.formulas import clauses as clauses_of
+from jacaros.agents.checks.goals import KnownActions
+from jacaros.agents.checks.handlers import Posts, with_mark
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.agents.language.nodes import UNDECLARED, ByKind, nodes_in, walk
@@ -75,9 +80,32 @@ def _unknown_operations(
         return
     offered = _Offered(types)
     for agent, program in programs:
+        posts = Posts(ByKind(*clauses_of(program)))
         for node in () if agent.agent_class else walk(*clauses_of(program)):
             if isinstance(node, nodes.ExternalAction) and isinstance(node.action, nodes.Literal):
-                yield from offered.check(node.action)
+                yield from offered.check(node.action, posts)
+
+
+_GOAL: Final = re.compile(r"no plan for `!(\w+)/(\d+)`")
+
+
+def operations_as_goals(
+    deployment: Deployment, programs: Sequence[tuple[AgentSpec, nodes.Program]], find_type: "FindType"
+) -> Callable[[Diagnostic], Diagnostic]:
+    """Return the function that adds the help to a warning about a goal without a plan that is an operation."""
+
+    @cache
+    def has(name: str, arity: int) -> bool:
+        types = made_types(deployment, [program for _, program in programs], find_type)
+        return _Offered(types or ()).has(name, arity)
+
+    def helped(warning: Diagnostic) -> Diagnostic:
+        goal = _GOAL.fullmatch(warning.message) if warning.code == "unknown-goal" else None
+        if goal is None or not has(goal[1], int(goal[2])):
+            return warning
+        return replace(warning, help=f"to call the operation, write `{goal[1]}` without `!`")
+
+    return helped
 
 
 def _is_open(program: nodes.Program) -> bool:
@@ -112,25 +140,37 @@ class _Offered:
         self._main = Environment(VirtualClock()).workspace("/main")
         self._personal = frozenset(keys())
 
-    def _has(self, name: str, arity: int) -> bool:
+    def has(self, name: str, arity: int) -> bool:
+        """Return whether an artifact, or the agent's own body, offers an operation."""
         if f"{name}/{arity}" in self._personal or self._main.providers(name, arity):
             return True
         return any(each.interface.operations.find(name, arity) is not None for each in self._types)
 
-    def check(self, action: nodes.Literal) -> Iterator[Diagnostic]:
-        """Return a warning if no artifact offers *action*."""
-        span, name, arity = action.span, action.functor, len(action.arguments)
-        if span is not None and not span.file.name.startswith("$") and not self._has(name, arity):
-            message = f"unknown operation `{name}/{arity}`: no artifact of the project has it"
-            yield Diagnostic("warning", message, span, self._help(name), "unknown-operation")
+    def lacks(self, action: nodes.Literal) -> bool:
+        """Return whether no artifact offers an action of a file of the user."""
+        own = action.span is not None and not action.span.file.name.startswith("$")
+        return own and not self.has(action.functor, len(action.arguments))
 
-    def _help(self, name: str) -> str | None:
+    def check(self, action: nodes.Literal, posts: Posts) -> Iterator[Diagnostic]:
+        """Return a warning if no artifact offers *action*. *posts* has the goals of its program."""
+        name, arity = action.functor, len(action.arguments)
+        if self.lacks(action):
+            message = f"unknown operation `{name}/{arity}`: no artifact of the project has it"
+            meant = with_mark((name, arity), posts, KnownActions(STANDARD))
+            help = did_you_mean([meant]) if meant else self._help(name, arity)
+            yield Diagnostic("warning", message, action.span, help, "unknown-operation")
+
+    def _help(self, name: str, arity: int) -> str | None:
         known = list(self._personal)
         for artifact_type in self._types:
             known += artifact_type.interface.operations.keys()
         for artifact in self._main.artifacts():
             known += self._main.offers(artifact)
         same = [each for each in dict.fromkeys(known) if each.partition("/")[0] == name]
+        shipped = [] if same else _shipped_with(name, arity)
+        if shipped:
+            files = " or ".join(f"`{each}`" for each in shipped)
+            return f"the shipped mapping {files} has it; run with `--mapping {shipped[0]}`"
         return did_you_mean(same or close_matches(name, [each.partition("/")[0] for each in known])) or None
 
 
@@ -140,7 +180,26 @@ def lacks_actions(programs: Sequence[nodes.Program], types: "Sequence[type[Artif
         return True
     offered = _Offered(types)
     actions = (node.action for each in programs for node in nodes_in(nodes.ExternalAction, each.plans))
-    return any(list(offered.check(each)) for each in actions if isinstance(each, nodes.Literal))
+    return any(offered.lacks(each) for each in actions if isinstance(each, nodes.Literal))
+
+
+def _shipped_with(name: str, arity: int) -> list[str]:
+    """Return the mappings of the package that have an operation."""
+    from jacaros.robots.mapping.file import (  # here: few programs need them
+        SHIPPED,
+        load_mapping,
+        shipped_mappings,
+    )
+
+    return [
+        each
+        for each in shipped_mappings()
+        if any(
+            (part.name, len(part.parameters) + len(part.outputs)) == (name, arity)
+            for artifact in load_mapping(SHIPPED / each).artifacts.values()
+            for part in artifact.operations
+        )
+    ]
 
 
 # ---- resources

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Final
 import jacaros.agents.mind.actions.standard  # noqa: F401 - fills the table of internal actions
 from jacaros.agents.checks.checker import Suppressions, check, place, wanted
 from jacaros.agents.checks.goals import KnownActions
+from jacaros.agents.checks.handlers import missing_marks, never_posted
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import AslError, Diagnostic, SourceFile
 from jacaros.agents.language.loader import read_program
+from jacaros.agents.mind.actions.internal_action import STANDARD
 from jacaros.runtime.files.python_modules import ModuleUnreadable, ProjectModules
 from jacaros.runtime.files.texts import is_file
 from jacaros.runtime.files.yaml import Problem
@@ -151,6 +153,7 @@ def _check_project(path: Path, findings: Findings) -> Set[Path]:
         findings.diagnostics += checked.of_artifacts(is_known)
     if is_known:
         checked.check_beliefs()
+        checked.check_goals()
     return reading.used
 
 
@@ -167,8 +170,13 @@ def _check_lone_program(path: Path, findings: Findings) -> Set[Path]:
         if any(artifact_types(program) for _, program in checked.programs):
             # A run may add artifacts with --mapping: an operation unlike all known ones may be theirs.
             findings.diagnostics += [
-                each for each in checked.of_artifacts() if each.code != "unknown-operation" or each.help
+                each
+                for each in checked.of_artifacts()
+                if each.code != "unknown-operation" or (each.help or "").startswith("did you mean")
             ]
+        else:
+            for _, program in checked.programs:
+                findings.diagnostics += missing_marks(program, KnownActions(STANDARD))
     return findings.files - {path.resolve()}
 
 
@@ -298,7 +306,11 @@ class _Checked:
         """Return the errors in the artifacts of a project and, if all programs are known, in what agents do with them."""
         # Imported on demand: programs without artifacts do not need them.
         from jacaros.robots.registry import type_finder
-        from jacaros.runtime.mas.checks.artifacts import check_artifacts, is_wrong_mapping
+        from jacaros.runtime.mas.checks.artifacts import (
+            check_artifacts,
+            is_wrong_mapping,
+            operations_as_goals,
+        )
         from jacaros.runtime.mas.environment import types_of
 
         artifacts = [
@@ -315,7 +327,21 @@ class _Checked:
         except ProjectError as error:
             return list(map(_of_project, error.diagnostics))
         programs = self.programs if is_known else []
+        if is_known:
+            helped = operations_as_goals(self.deployment, self.programs, find_type)
+            self._findings.diagnostics[:] = map(helped, self._findings.diagnostics)
         return check_artifacts(self.deployment, programs, self._folders, find_type)
+
+    def check_goals(self) -> None:
+        """Note plans for goals that no agent posts, in the folder of the project, unless parts of it are not run."""
+        if self.deployment.ignored or any(agent.agent_class for agent, _ in self.programs):
+            return
+        base = self.deployment.base_path.resolve()
+        self._findings.diagnostics += never_posted(
+            [program for _, program in self.programs],
+            KnownActions(STANDARD),
+            lambda span: Path(span.file.name).resolve().is_relative_to(base),
+        )
 
     def check_beliefs(self, is_lone: bool = False) -> None:
         """Report beliefs that nothing adds, unless classes of the project may add more.

@@ -1,0 +1,193 @@
+"""Check for plans of goals that nothing posts, and for actions that lack the mark of a goal or internal action.
+
+>>> from jacaros.agents.language.loader import load_program
+>>> program, _ = load_program("robot.asl", "!start. +!start <- !go_to(3). +!go_to(X) <- drive(X). -!goto(X).")
+>>> [each.help for each in unused_handlers(ByKind(program.goals, program.plans), KnownActions({}))]
+['did you mean `-!go_to/1`?']
+"""
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Final
+
+from jacaros.agents.checks.formulas import labelled
+from jacaros.agents.checks.goals import PRINTING, KnownActions
+from jacaros.agents.language import nodes
+from jacaros.agents.language.diagnostics import Diagnostic, Span, problem
+from jacaros.agents.language.nodes import ByKind, walk
+from jacaros.runtime.files.texts import close_matches, did_you_mean
+
+Key = tuple[str, int]
+"""Name and number of arguments of a goal or action."""
+
+_WORD: Final = re.compile(r"\w+")
+_OF_MESSAGES: Final = "kqml_received"
+"""The goal that every message posts."""
+
+
+class Posts:
+    """The goals that programs may post, and those that they have plans for.
+
+    Attributes:
+        handled: goals with plans ``+!g``.
+    """
+
+    def __init__(self, *found: ByKind) -> None:
+        triggers = [trigger for each in found for trigger in each.of(nodes.Trigger)]
+        self.handled = {
+            _key(each.literal)
+            for each in triggers
+            if each.operator == "+" and each.kind == "!" and isinstance(each.literal, nodes.Literal)
+        }
+        printed = [
+            call.arguments
+            for each in found
+            for call in each.of(nodes.InternalAction)
+            if call.name in PRINTING
+        ]
+        steps = [step.action for each in found for step in each.of(nodes.ExternalAction)]
+        no_posts = (
+            {id(each.literal) for each in triggers} | set(map(id, steps)) | set(map(id, walk(*printed)))
+        )
+        self._literals = {
+            _key(each) for one in found for each in one.of(nodes.Literal) if id(each) not in no_posts
+        }
+        texts = [each.value for one in found for each in one.of(nodes.String) if id(each) not in no_posts]
+        self._words = {word for text in texts for word in _WORD.findall(text)}
+
+    def may_post(self, goal: Key) -> bool:
+        """Return whether a goal is posted, or may be: it appears in a term, or its name in a text."""
+        return goal in self._literals or goal[0] in self._words or goal[0] == _OF_MESSAGES
+
+
+def _key(literal: nodes.Literal) -> Key:
+    return literal.functor, len(literal.arguments)
+
+
+def unused_handlers(found: ByKind, known: KnownActions) -> Iterator[Diagnostic]:
+    """Warn of ``-!g`` and ``-?g`` plans for goals that nothing posts and that have no plan."""
+    if is_open(found, known):
+        return
+    posts = Posts(found)
+    for plan in found.of(nodes.Plan):
+        trigger, literal = plan.trigger, plan.trigger.literal
+        if (
+            trigger.operator != "-"
+            or not trigger.kind
+            or not isinstance(literal, nodes.Literal)
+            or not _is_own(literal)
+        ):
+            continue
+        key = _key(literal)
+        asked = any(
+            each.kind == "?" and _is_for(each, key) and each.operator == "+"
+            for each in found.of(nodes.Trigger)
+        )
+        if not posts.may_post(key) and key not in posts.handled and not asked:
+            meant = _meant(key, posts.handled)
+            message = f"no goal `{trigger.kind}{_text(key)}` can fail: nothing posts it, and it has no plan"
+            yield problem(
+                "unused-handler",
+                message,
+                trigger.span,
+                did_you_mean(f"-!{_text(each)}" for each in meant) or None,
+            )
+
+
+def _is_for(trigger: nodes.Trigger, key: Key) -> bool:
+    return isinstance(trigger.literal, nodes.Literal) and _key(trigger.literal) == key
+
+
+def _is_own(literal: nodes.Literal) -> bool:
+    """Return whether a literal is in the default namespace, and not in a library of JaCaROS."""
+    return literal.namespace is None and (literal.span is None or literal.span.file.name[:1] != "$")
+
+
+def is_open(found: ByKind, known: KnownActions) -> bool:
+    """Return whether goals or plans come from elsewhere: a plan for any goal, a computed goal, plans added at run time."""
+    return (
+        any(isinstance(each.literal, nodes.Variable) and each.kind for each in found.of(nodes.Trigger))
+        or any(isinstance(each.goal, nodes.Variable) for each in found.of(nodes.Achieve))
+        or any(known.of(call).brings_in for call in found.of(nodes.InternalAction))
+    )
+
+
+def _meant(wanted: Key, handled: Iterable[Key]) -> list[Key]:
+    """Return the goals of the same or a similar name."""
+    same = sorted(each for each in handled if each[0] == wanted[0])
+    close = close_matches(wanted[0], [name for name, _ in handled])
+    return same or sorted(each for each in handled if each[0] in close)
+
+
+def _text(key: Key) -> str:
+    return f"{key[0]}/{key[1]}"
+
+
+def never_posted(
+    programs: Sequence[nodes.Program], known: KnownActions, is_project: Callable[[Span], bool]
+) -> Iterator[Diagnostic]:
+    """Note plans for goals that no agent of a project posts, in files of which *is_project* is true.
+
+    Args:
+        programs: all programs of the project.
+        known: their internal actions.
+        is_project: whether a place is in a file that only this project uses.
+    """
+    found = [ByKind(each.beliefs, each.goals, each.plans) for each in programs]
+    if any(is_open(each, known) for each in found):
+        return
+    posts = Posts(*found)
+    for plan in (plan for each in programs for plan in each.plans):
+        trigger, literal = plan.trigger, plan.trigger.literal
+        if (
+            trigger.operator != "+"
+            or not trigger.kind
+            or not isinstance(literal, nodes.Literal)
+            or not _is_own(literal)
+        ):
+            continue
+        is_test = any(item.functor == "test" for item in labelled(plan))
+        if trigger.span is None or is_test or posts.may_post(_key(literal)) or not is_project(trigger.span):
+            continue
+        goal = f"{trigger.kind}{_text(_key(literal))}"
+        help = "post it, or remove the plan; from outside, such as from the page, it can still be posted"
+        yield problem("goal-never-posted", f"no agent of the project posts `{goal}`", trigger.span, help)
+
+
+_OFTEN_MEANT: Final = frozenset(
+    {"abolish", "broadcast", "concat", "drop_desire", "drop_intention", "fail", "findall", "length", "member"}
+    | {"my_name", "nth", "send", "stopMAS", "succeed_goal", "wait"}
+)
+"""Internal actions without their dots that are not operations of usual artifacts."""
+
+
+def with_mark(action: Key, posts: Posts, known: KnownActions) -> str:
+    """Return the goal or internal action that an unknown action probably is; empty if there is none."""
+    if action in posts.handled:
+        return f"!{action[0]}"
+    internal = known.declared.get(f".{action[0]}")
+    return f".{action[0]}" if internal is not None and internal.takes(action[1]) else ""
+
+
+def missing_marks(program: nodes.Program, known: KnownActions) -> Iterator[Diagnostic]:
+    """Warn of actions, in a program whose artifacts are not known, that are certainly goals or internal actions.
+
+    They are goals if a plan handles the goal of that name, and nothing posts it; a plan for a goal may call the operation
+    of the same name.
+    """
+    found = ByKind(program.beliefs, program.goals, program.plans)
+    posts = Posts(found)
+    for plan in program.plans:
+        of = plan.trigger.literal.functor if isinstance(plan.trigger.literal, nodes.Literal) else ""
+        for step in ByKind(plan.body, plan.subplans).of(nodes.ExternalAction):
+            if (
+                not isinstance(step.action, nodes.Literal)
+                or not _is_own(step.action)
+                or step.action.functor == of
+            ):
+                continue
+            key = _key(step.action)
+            meant = with_mark(key, posts, known)
+            if (meant.startswith("!") and not posts.may_post(key)) or meant[1:] in _OFTEN_MEANT:
+                message = f"`{_text(key)}` is an action of the environment: it has no mark of a goal or internal action"
+                yield problem("missing-mark", message, step.span, did_you_mean([meant]))
