@@ -173,9 +173,9 @@ async def test_marks_are_reachable_by_keyboard_and_have_texts() -> None:
     async with replayed(run) as page:
         await page.wait_for("document.querySelectorAll('.marks .mark').length === 2")
         await page.evaluate("document.querySelector('.marks .mark').focus()")
-        assert await page.text(".tip") == "0:02.0 docked: docked at dock"
+        assert await page.text("#timeline .tip") == "0:02.0 docked: docked at dock"
         await page.press("ArrowRight")
-        assert (await page.text(".tip")).startswith("0:04.0 failure: bumped into a wall")
+        assert (await page.text("#timeline .tip")).startswith("0:04.0 failure: bumped into a wall")
         label = "document.activeElement.getAttribute('aria-label')"
         assert (await page.evaluate(label)).startswith("0:04.0 failure: bumped into a wall")
         await page.press("Enter")

@@ -25,10 +25,10 @@ export function setText(node, text) {
   if (node.textContent !== text) node.textContent = text;
 }
 
-/** Seconds as minutes and seconds: 1:05.3. */
+/** Seconds as minutes and seconds, 1:05.3, after an hour with hours: 1:01:05.3. */
 export function clock(t) {
-  const tenths = Math.round(t * 10), minutes = Math.floor(tenths / 600), seconds = (tenths - minutes * 600) / 10;
-  return `${minutes}:${seconds < 10 ? "0" : ""}${seconds.toFixed(1)}`;
+  const tenths = Math.round(t * 10), minutes = Math.floor(tenths / 600), seconds = ((tenths - minutes * 600) / 10).toFixed(1).padStart(4, "0");
+  return minutes < 60 ? `${minutes}:${seconds}` : `${Math.floor(minutes / 60)}:${String(minutes % 60).padStart(2, "0")}:${seconds}`;
 }
 
 /** A number with `digits` decimals, without a minus before 0. */

@@ -7,7 +7,7 @@ const SHADES = 4;  // of strips
 const LETTER = 6.03;  // pixels of a letter of the font
 const FONT = "10px ui-monospace, Menlo, Consolas, 'DejaVu Sans Mono', monospace";
 const COLOURS = ["accent", "accent", "warn", "muted", "good", "bad", "bad", "warn"];  // by kind
-const SOLID = [0.9, 0.55, 0.35, 0.15, 0.45, 0.6, 0.9, 0.8];  // how opaque a kind is
+const SOLID = [0.55, 0.3, 0.35, 0.15, 0.45, 0.6, 0.9, 0.8];  // how opaque a kind is
 
 /** Draws lanes on a canvas: only what is in view, and nothing that is narrower than three pixels by itself. */
 export class LanesDrawing {
@@ -15,8 +15,8 @@ export class LanesDrawing {
 
   /**
    * @param {object[]} rows `bars`, `sort`, `y`, `height`, `label`; those in view are drawn.
-   * @param {object} scene `top`: pixels that are scrolled away; `width`, `height`; `end` of the run; `selected(what)`; `current`, the
-   *   bar that the pointer or the keys are at; `messages` with the rows that each leads `from` and `to`.
+   * @param {object} scene `top`: pixels that are scrolled away; `width`, `height`; `end` of the run; `selected(what)`;
+   *   `current`: the bar that the pointer or the keys are at; `messages`: arrows from `x`, `from` to `end`, `to`.
    */
   draw(rows, scene) {
     const { axis } = this, pen = this.pen = fitted(this.canvas, scene.width, scene.height);
@@ -155,13 +155,12 @@ export class LanesDrawing {
   }
 
   drawMessages(messages) {
-    const { pen, axis } = this, last = new Map();  // by pair of rows: the pixel of the last arrow
+    const { pen } = this, last = new Map();  // by pair of rows: the pixel of the last arrow
     pen.strokeStyle = pen.fillStyle = themeColor("person");
-    for (const { sent, read, from, to } of messages) {
-      const x = axis.x(sent), key = from * 1e5 + to;
+    for (const { x, end, from, to } of messages) {
+      const key = from * 1e5 + to, down = Math.sign(to - from);
       if (x - (last.get(key) ?? -Infinity) < 3) continue;
       last.set(key, x);
-      const end = axis.x(Math.min(read, sent + 5 * axis.grain)), down = Math.sign(to - from);
       pen.lineWidth = 1;
       pen.beginPath();
       pen.moveTo(x, from);

@@ -1,5 +1,6 @@
 import { element, isDark, setText } from "./elements.js";
 import { showWhy } from "./jumps.js";
+import { Bars, KIND } from "./lanes_bars.js";
 import { LanesDrawing } from "./lanes_drawing.js";
 import { barLines } from "./lanes_words.js";
 import { shortName } from "./link_words.js";
@@ -7,8 +8,10 @@ import { TimePointer } from "./time_pointer.js";
 import { indexAt } from "./track.js";
 
 const NEAR = 5;  // pixels around a bar, or a mark, in which it is pointed at
+const THIN = 3;  // pixels around an arrow
 const FOLDED = 2;  // intentions of a folded agent that have a high row
-const MANY = 6;  // agents from which on they can be filtered
+const MANY = 6;  // agents from which on they are ordered, and can be filtered
+const LEGEND = [["runs", "runs"], ["acts", "acts"], ["waits", "waits"], ["suspended", "suspended"], ["lost", "lost goal"], ["handled", "failure with a plan"]];
 const HEIGHTS = { states: 16, more: 4, goals: 12, actions: 10, refusals: 6, resources: 12, operations: 12 };
 
 /** Lanes: intentions of each agent, owners of resources and operations of artifacts over time, on one canvas. */
@@ -25,8 +28,10 @@ export class LanesView {
     this.filter = element("input", "entry");
     Object.assign(this.filter, { placeholder: "Filter agents", ariaLabel: "Filter agents" });
     root.append(this.cursor, this.canvas, this.space);
-    root.closest(".when").append(this.tip);
-    root.closest(".when").querySelector(".tools").prepend(this.filter);
+    const panel = root.closest(".when");
+    panel.append(this.tip);
+    panel.querySelector(".tools").prepend(this.filter);
+    panel.querySelector("h2").after(element("ul", "lanes-legend", ...LEGEND.map(([sort, text]) => element("li", sort, text))));
     this.listen();
   }
 
@@ -64,7 +69,7 @@ export class LanesView {
     const { lanes } = this;
     Object.assign(this, { rows: [], height: 4 });
     for (const lane of this.agents()) this.addAgent(lane);
-    for (const { name, bars } of lanes.resources.values()) this.add("resources", bars, { label: name, isFirst: true });
+    for (const { name, bars } of lanes.resources.values()) this.add("resources", bars, { label: `owner: ${name.replace(/^\//, "")}`, isFirst: true });
     for (const { name, rows, lasts } of lanes.artifacts.values()) {
       if (lasts || this.context.selection.has({ artifact: name })) rows.forEach((bars, n) => this.add("operations", bars, { label: n ? "" : shortName(name), isFirst: !n }));
     }
@@ -92,28 +97,49 @@ export class LanesView {
 
   /** The lanes of agents: of the selected one, then of those with something in view, then of the others. */
   agents() {
-    const { axis, lanes, context } = this, { time, selection } = context, filter = this.filter.value.trim().toLowerCase();
-    const key = `${lanes.agents.size} ${selection.current.agent} ${filter} ${time.live || time.playing ? "" : `${axis.from} ${axis.to}`}`;
+    const { axis, lanes, context } = this, key = this.orderKey(), filter = this.filter.value.trim().toLowerCase();
     if (key === this.order?.key) return this.order.lanes;
-    const rank = (lane) => (lane.name === selection.current.agent ? 0 : lane.slots.some(({ states }) => states.at((axis.from + axis.to) / 2, axis.span / 2) >= 0) ? 1 : 2);
+    const isSeen = ({ slots }) => slots.some(({ states }) => states.at((axis.from + axis.to) / 2, axis.span / 2) >= 0);
+    const rank = (lane) => (lanes.agents.size < MANY ? 0 : context.selection.has({ agent: lane.name }) ? -1 : isSeen(lane) ? 0 : 1);
     const found = [...lanes.agents.values()].filter(({ name }) => name.toLowerCase().includes(filter)).map((lane) => [rank(lane), lane]);
     this.order = { key, lanes: found.sort((a, b) => a[0] - b[0]).map(([, lane]) => lane) };
     return this.order.lanes;
+  }
+
+  /** The same as long as the order of agents need not change: never while time moves. */
+  orderKey() {
+    const { axis, lanes, filter, context: { time, selection } } = this;
+    return `${lanes.agents.size} ${selection.current.agent} ${filter.value} ${time.live || time.playing ? "" : `${axis.from} ${axis.to}`}`;
   }
 
   /** Messages in view between agents that have lanes, with the heights of these. */
   arrows() {
     const { messages, axis } = this, heights = new Map(this.rows.filter(({ lane }) => lane).map(({ label, y, height }) => [label, y + height / 2]));
     return messages.all.slice(indexAt(messages.times, axis.from) + 1, indexAt(messages.times, axis.to) + 1)
-      .map(({ sent, read, from, to }) => ({ sent, read, from: heights.get(from), to: heights.get(to) }))
+      .map((message) => ({ message, from: heights.get(message.from), to: heights.get(message.to), x: axis.x(message.sent), end: axis.x(Math.min(message.read, message.sent + 5 * axis.grain)) }))
       .filter(({ from, to }) => from !== undefined && to !== undefined && from !== to);
   }
 
   // ---- pointer
 
+  /** The message whose arrow is at a pixel, as a row of its own. */
+  findMessage(x, y) {
+    const found = this.arrows().findLast((each) => {
+      const part = (y - each.from) / (each.to - each.from);
+      return part >= 0 && part <= 1 && Math.abs(each.x + part * (each.end - each.x) - x) < THIN;
+    });
+    if (!found) return null;
+    const { from, to, message } = found, bars = new Bars();
+    bars.begin(message.sent, KIND.runs, { ...message, agent: message.from, cause: message.id });
+    bars.end(message.read);
+    return { row: { bars, sort: "messages", y: Math.min(from, to), height: Math.abs(to - from) }, index: 0 };
+  }
+
   /** What is at a pixel: a row, and the bar in it; null for nothing. */
   find(x, y) {
-    const { axis } = this, at = y + this.root.scrollTop, row = this.rows.find((each) => at >= each.y - 1 && at <= each.y + each.height + 2);
+    const { axis } = this, at = y + this.root.scrollTop, message = x < axis.left ? null : this.findMessage(x, at);
+    if (message) return message;
+    const row = this.rows.find((each) => at >= each.y - 1 && at <= each.y + each.height + 2);
     if (!row) return null;
     if (x < axis.left) return { row, index: -1 };
     const t = axis.t(x), failure = row.failures?.at(t, NEAR * axis.grain) ?? -1;
@@ -146,11 +172,12 @@ export class LanesView {
     const { bars } = row, what = bars.whats[index].root ?? bars.whats[index], { agent, intention, artifact, cause, id } = what;
     this.context.time.go(Math.max(bars.starts[index], Math.min(bars.ends[index], t)));
     showWhy(this.context, { agent, ...(intention === undefined ? {} : { intention }), ...(artifact ? { artifact, cause: id } : { cause }) });
+    if (this.order) this.order.key = this.orderKey();  // what you clicked stays where it is
   }
 
   /** Outline a bar, and tell about it. */
   point(found, x = found ? this.axis.x(found.row.bars.starts[found.index]) : 0) {
-    const isSame = found?.row.bars === this.current?.row.bars && found?.index === this.current?.index;
+    const isSame = found?.row.bars.whats[found.index] === this.current?.row.bars.whats[this.current.index];
     this.current = found;
     this.tip.hidden = !found;
     if (found) this.tell(found, x);

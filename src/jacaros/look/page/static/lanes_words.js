@@ -9,6 +9,7 @@ const MOST = 3;  // plans of folded refusals that are named
 /** The lines that tell about the bars from `first` to `end` of a row of lanes. */
 export function barLines({ bars, sort }, first, end, index, { minds, lanes }) {
   const what = bars.whats[first], from = bars.starts[first], to = bars.ends[end - 1];
+  if (sort === "messages") return [`${what.from} to ${what.to}: ${what.performative} ${what.content}`, `sent ${clock(from)}, ${to === Infinity ? "not read" : `read ${clock(to)}`}`];
   if (sort === "refusals") return refusals(bars, first, end, index, minds);
   if (sort === "failures") return failures(bars, first, end);
   if (end - first > 1) return [`${end - first} ${sort === "states" ? "states of intentions" : sort}`, span(from, to)];

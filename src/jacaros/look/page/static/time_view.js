@@ -70,10 +70,8 @@ export class TimeView {
   }
 }
 
-/** A moment as 1:05, with hours in long runs, and tenths when the ticks are near. */
+/** A moment as 1:05, with tenths when the ticks are near. */
 function tickText(t, ticks) {
   if (ticks.length > 1 && ticks[1] - ticks[0] < 1) return clock(t);
-  const seconds = Math.round(t), two = (n) => String(n).padStart(2, "0");
-  if (seconds < 3600) return `${Math.floor(seconds / 60)}:${two(seconds % 60)}`;
-  return `${Math.floor(seconds / 3600)}:${two(Math.floor(seconds / 60) % 60)}:${two(seconds % 60)}`;
+  return clock(t).slice(0, -2);
 }

@@ -9,7 +9,7 @@ const PLAY = "▶", PAUSE = "❚❚";
 /** Time: slider, marks with a legend, play and pause, speed, and the way back to a live run. */
 export class TimelineView {
   constructor(root, context, log) {
-    Object.assign(this, { root, log, time: context.time, run: context.run, selection: context.selection });
+    Object.assign(this, { root, log, time: context.time, axis: context.axis, run: context.run, selection: context.selection });
     this.drawn = { end: -1, length: 0, width: 0 };
     this.hasSpeed = false;
     this.make();
@@ -37,7 +37,8 @@ export class TimelineView {
     for (const speed of SPEEDS) this.speed.append(new Option(speed === 0.5 ? "½×" : `${speed}×`, String(speed)));
     this.speedLabel = element("label", "speed", "Speed ", this.speed);
     this.legend = element("ul", "legend");
-    const track = element("div", "track", this.marks, this.slider, this.tip);
+    this.range = element("div", "range");
+    const track = element("div", "track", this.marks, this.slider, element("div", "ranges", this.range), this.tip);
     this.root.append(this.play, this.onAir, element("div", "clock", this.now, " ", this.end), track, this.live, this.speedLabel,
       this.legend);
   }
@@ -64,7 +65,16 @@ export class TimelineView {
     this.onAir.classList.toggle("lost", Boolean(time.lost));
     this.live.hidden = !time.canBeLive || time.live;
     this.speedLabel.hidden = time.live;
+    this.showRange();
     this.showMarks();
+  }
+
+  /** Mark the part of the run that lanes and curves show. */
+  showRange() {
+    const { from, span } = this.axis, end = Math.max(this.run.end, 1e-9);
+    this.range.hidden = span >= end;
+    this.range.style.left = `${100 * from / end}%`;
+    this.range.style.width = `${100 * Math.min(1, span / end)}%`;
   }
 
   /** Play a replay at a speed at which it does not last long. */
