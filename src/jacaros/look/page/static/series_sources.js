@@ -2,8 +2,7 @@ import { Track } from "./track.js";
 
 const LIMIT = 1000000;  // values of one source that are kept
 const IN_ALL = 5000000;
-const MOST = 12;  // arguments
-const NUMBER = /^-?\d/;
+const NUMBER = /^\s*-?\d/, NESTED = /["([]/;
 
 /**
  * The numbers that records contain, each over time: arguments of beliefs, values of properties, states of robots, and what
@@ -14,7 +13,7 @@ const NUMBER = /^-?\d/;
  */
 export class SeriesSources {
   constructor(world) {
-    Object.assign(this, { world, sources: new Map(), held: new Map(), robots: [], count: 0 });
+    Object.assign(this, { world, sources: new Map(), groups: new Map(), robots: [], count: 0 });
     this.version = 0;  // grows with each source
   }
 
@@ -39,12 +38,11 @@ export class SeriesSources {
     return source;
   }
 
-  put(t, value, key, describe) {
-    const { track } = this.source(key, describe), last = track.times.length - 1;
-    if (Number.isNaN(value) && !(track.values[last] === track.values[last])) return;
+  put({ track }, t, value) {
+    const last = track.times.length - 1, before = track.values[last];
     // A new value at the moment at which the old one went replaces the gap.
-    if (track.times[last] === t && Number.isNaN(track.values[last])) track.values[last] = value;
-    else {
+    if (track.times[last] === t && before !== before) track.values[last] = value;
+    else if (value === value || before === before) {
       track.add(t, value);
       if (++this.count > IN_ALL) this.forget();
     }
@@ -58,54 +56,55 @@ export class SeriesSources {
     this.count >>= 1;
   }
 
-  /** Take the numbers of a literal or property; `prefix` tells whose they are. */
-  putAll(t, prefix, { name, values }, more) {
-    values.forEach((value, argument) => {
-      if (Number.isNaN(value)) return;
-      const place = values.length > 1 ? `${name}(${values.map((_, i) => (i === argument ? "#" : "_")).join(",")})` : name;
-      this.put(t, value, `${prefix} ${name} ${argument}`, () => ({ name, argument, unit: UNITS[name] ?? "", ...more, title: `${more.of} ${place}` }));
-    });
+  /** What is known of a belief, a property or what messages say: `held`, and by argument the `sources` of numbers. */
+  group(key, describe) {
+    let group = this.groups.get(key);
+    if (!group) this.groups.set(key, group = { ...describe(), held: new Set(), sources: [] });
+    return group;
   }
 
   /**
-   * Take a belief or property that comes or goes; `id` tells it from others with its name.
+   * Take values that come or go; `id` tells them from others of their group.
    *
    * A name with several values at one time, such as the places of a map, is not one number over time.
    */
-  change(t, prefix, literal, id, isHeld, more) {
-    const whose = `${prefix} ${literal.name}`, held = this.held.get(whose) ?? new Set();
-    this.held.set(whose, held);
+  change(t, group, values, id, isHeld) {
+    const { held, sources } = group;
     if (isHeld) held.add(id); else held.delete(id);
-    if (isHeld) this.putAll(t, prefix, literal, more);
-    for (let i = 0; i < MOST && held.size !== 1; i++) {
-      const source = this.sources.get(`${whose} ${i}`);
-      if (source && !held.size) this.put(t, NaN, source.key);
-      else if (source) source.isMany = true;
+    if (isHeld) for (let i = 0; i < values.length; i++) if (values[i] === values[i]) this.put(sources[i] ??= this.numbered(group, values, i), t, values[i]);
+    if (held.size === 1) return;
+    for (const source of sources) {
+      if (source && held.size) source.isMany = true;
+      else if (source) this.put(source, t, NaN);
     }
+  }
+
+  /** The source of a numeric argument of a group. */
+  numbered({ prefix, name, of, agent }, values, argument) {
+    const place = values.length > 1 ? `${name}(${values.map((_, i) => (i === argument ? "#" : "_")).join(",")})` : name;
+    return this.source(`${prefix} ${name} ${argument}`, () => ({ name, argument, agent, of, unit: UNITS[name] ?? "", title: `${of} ${place}` }));
   }
 }
 
 /** The keys of the numbers in a belief. */
 export function beliefKeys(agent, text) {
-  const literal = parsed(text);
-  return literal ? keysOf(`belief ${agent}${ofArtifact(text)}`, literal) : [];
+  const [name, literal, annotations] = divided(text);
+  return name ? keysOf(`belief ${agent}${ofArtifact(annotations)}`, name, numbersIn(literal, name)) : [];
 }
 
 /** The keys of the numbers in a property of an artifact. */
-export function propertyKeys(artifact, { name, values }) { return keysOf(`property ${artifact}`, { name, values: values.map(asNumber) }); }
+export function propertyKeys(artifact, { name, values }) { return keysOf(`property ${artifact}`, name, values.map(asNumber)); }
 
 /** The keys of a robot's battery and place. */
 export function robotKeys(robot) { return ["battery", "x", "y"].map((name) => `robot ${robot} ${name}`); }
 
 /** The keys of the numbers in a message. */
 export function messageKeys({ from, to, content }) {
-  const literal = parsed(String(content));
-  return literal ? keysOf(`message ${from} ${to}`, literal) : [];
+  const [name, literal] = divided(String(content));
+  return name ? keysOf(`message ${from} ${to}`, name, numbersIn(literal, name)) : [];
 }
 
-function keysOf(prefix, { name, values }) {
-  return values.flatMap((value, i) => (Number.isNaN(value) ? [] : [`${prefix} ${name} ${i}`]));
-}
+function keysOf(prefix, name, values) { return values.flatMap((value, i) => (value === value ? [`${prefix} ${name} ${i}`] : [])); }
 
 const UNITS = { battery: "%" };
 const ROBOT = [["battery", "%"], ["x", "m"], ["y", "m"], ["yaw", "°", 180 / Math.PI]];
@@ -114,42 +113,44 @@ const TAKE = {
   frame(all, t, rows) {
     rows.forEach(([x, y], index) => {
       const robot = all.robots[index] ??= robotSources(all, index);
-      if (t > robot.t) all.put(t, Math.hypot(x - robot.x, y - robot.y) / (t - robot.t), robot.speed);
+      if (t > robot.t) all.put(robot.speed, t, Math.hypot(x - robot.x, y - robot.y) / (t - robot.t));
       Object.assign(robot, { t, x, y });
     });
   },
   laser(all, t, { robot, ranges }) {
     let nearest = Infinity;
     for (const range of ranges) if (range > 0 && range < nearest) nearest = range;
-    if (nearest < Infinity) all.put(t, nearest / 100, `robot ${robot} laser`, () => ({ name: "laser", argument: 0, unit: "m", of: robot, title: `${robot} nearest echo` }));
+    if (nearest < Infinity) all.put(all.source(`robot ${robot} laser`, () => ({ ...STATE, name: "laser", unit: "m", of: robot, title: `${robot} nearest echo` })), t, nearest / 100);
   },
   property(all, t, { artifact, name, key, values }) {
-    const property = { name, values: (values ?? []).map(asNumber) };
-    all.change(t, `property ${artifact}`, property, key, Boolean(values), { of: artifact.split("/").at(-1) });
+    const group = all.group(`${artifact} ${name}`, () => ({ prefix: `property ${artifact}`, name, of: artifact.split("/").at(-1) }));
+    all.change(t, group, (values ?? []).map(asNumber), key, Boolean(values));
   },
   belief(all, t, { agent, op, belief }) {
-    const text = String(belief), literal = parsed(text);
-    if (!literal || literal.values.every(Number.isNaN)) return;
-    all.change(t, `belief ${agent}${ofArtifact(text)}`, literal, text.slice(0, text.lastIndexOf(")[") + 1) || text, op !== "-", { of: agent, agent });
+    const [name, literal, annotations] = divided(String(belief));
+    if (!name) return;
+    const group = all.group(`${agent} ${name}${annotations}`, () => ({ prefix: `belief ${agent}${ofArtifact(annotations)}`, name, of: agent, agent }));
+    all.change(t, group, op === "-" ? [] : numbersIn(literal, name), literal, op !== "-");
   },
   message(all, t, { from, to, content, state }) {
-    const literal = state === "read" ? null : parsed(String(content));
-    if (literal) all.putAll(t, `message ${from} ${to}`, literal, { of: `${from} → ${to}` });
+    const [name, literal] = state === "read" ? [] : divided(String(content));
+    if (!name) return;
+    const group = all.group(`${from} ${to} ${name}`, () => ({ prefix: `message ${from} ${to}`, name, of: `${from} → ${to}` }));
+    all.change(t, group, numbersIn(literal, name), "", true);
   },
 };
+
+const STATE = { argument: 0, isStep: false };
 
 /** Make the sources of a robot's state. The world keeps its pose and battery. */
 function robotSources(all, index) {
   const { world } = all, robot = world.robot(index).name;
-  const describe = (name, unit) => ({ name, unit, argument: 0, of: robot, title: `${robot} ${name}`, isStep: false });
+  const source = (name, unit, more) => all.source(`robot ${robot} ${name}`, () => ({ ...STATE, name, unit, of: robot, title: `${robot} ${name}`, ...more }));
   for (const [name, unit, scale] of ROBOT) {
-    if (name === "battery" && world.columns[index].battery.at(-1) < 0) continue;
     const track = { get times() { return world.times; }, get values() { return world.columns[index][name]; } };
-    all.source(`robot ${robot} ${name}`, () => ({ ...describe(name, unit), scale, track }));
+    if (name !== "battery" || track.values.at(-1) >= 0) source(name, unit, { scale, track });
   }
-  const speed = `robot ${robot} speed`;
-  all.source(speed, () => describe("speed", "m/s"));
-  return { speed, t: Infinity };
+  return { speed: source("speed", "m/s"), t: Infinity };
 }
 
 function ofArtifact(text) {
@@ -159,32 +160,29 @@ function ofArtifact(text) {
 
 function asNumber(value) { return typeof value === "number" ? value : NaN; }
 
-/** Functor and arguments of a literal, NaN for those that are not numbers; null without arguments. */
-function parsed(text) {
-  const open = text.indexOf("("), bracket = text.indexOf("[");
-  if (open < 1 || (bracket >= 0 && bracket < open)) return null;
-  const values = [];
-  let depth = 0, isQuoted = false, start = open + 1;
-  for (let i = open; i < text.length; i++) {
-    const sign = text[i];
-    if (isQuoted) {
-      if (sign === "\\") i += 1; else isQuoted = sign !== '"';
-    } else if (sign === '"') isQuoted = true;
-    else if (sign === "(" || sign === "[") depth += 1;
-    else if (sign === "," && depth === 1) start = take(values, text, start, i);
-    else if (sign === ")" || sign === "]") {
-      depth -= 1;
-      if (depth === 0) {
-        take(values, text, start, i);
-        break;
-      }
-    }
-  }
-  return { name: text.slice(0, open), values };
+/** Functor of a literal, the literal without its annotations, and these; empty without arguments. */
+function divided(text) {
+  const open = text.indexOf("("), end = text.indexOf(")[") + 1 || text.length;
+  return open < 1 || text.lastIndexOf("[", open) > 0 ? [] : [text.slice(0, open), text.slice(0, end), text.slice(end)];
 }
 
-function take(values, text, start, end) {
-  const written = text.slice(start, end).trim();
-  values.push(NUMBER.test(written) ? Number(written) : NaN);
-  return end + 1;
+/** The arguments of a literal, NaN for those that are not numbers. */
+function numbersIn(literal, { length }) {
+  const written = literal.slice(length + 1, -1), parts = NESTED.test(written) ? topLevel(written) : written.split(",");
+  return parts.map((part) => (NUMBER.test(part) ? Number(part) : NaN));
+}
+
+/** Split arguments at the commas that are not in strings, lists or structures. */
+function topLevel(written) {
+  const plain = written.replace(/"(?:[^"\\]|\\.)*"/g, (quoted) => "_".repeat(quoted.length)), parts = [];
+  let depth = 0, start = 0;
+  for (let i = 0; i <= plain.length; i++) {
+    if (plain[i] === "(" || plain[i] === "[") depth += 1;
+    else if (plain[i] === ")" || plain[i] === "]") depth -= 1;
+    else if (i === plain.length || (plain[i] === "," && !depth)) {
+      parts.push(plain.slice(start, i));
+      start = i + 1;
+    }
+  }
+  return parts;
 }
