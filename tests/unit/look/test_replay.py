@@ -93,7 +93,11 @@ def test_the_same_recording_gives_the_same_page() -> None:
 def test_a_recording_without_frames_still_makes_a_page() -> None:
     recorder = Recorder()
     recorder.world(World.load("empty").description.drawing())
-    assert [record["kind"] for record in unpacked(replay_html(recorder.recording))] == ["frames", "world"]
+    assert [record["kind"] for record in unpacked(replay_html(recorder.recording))] == [
+        "frames",
+        "world",
+        "story",
+    ]
 
 
 def test_modules_are_joined_in_the_order_of_their_imports(tmp_path: Path) -> None:

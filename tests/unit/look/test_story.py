@@ -26,7 +26,7 @@ def goal(t: float, goal: str, state: str, number: int, intention: int = 1, **mor
 
 def rounds(count: int, lasting: float = 10.0) -> list[Record]:
     """A patrol by tail calls: each round replaces the one before, in one intention."""
-    found = [(0.0, "agent", {"agent": "watch", "state": "began"})]
+    found: list[Record] = [(0.0, "agent", {"agent": "watch", "state": "began"})]
     for number in range(count):
         found.append(goal(number * lasting, f"!patrol({number % 4 + 1})", "pursued", number))
         found.append(goal((number + 1) * lasting, f"!patrol({number % 4 + 1})", "replaced", number))

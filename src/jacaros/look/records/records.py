@@ -403,8 +403,8 @@ class GraphRecord(EventRecord):
 class DebugRecord(EventRecord):
     """`state` (`paused`, `running`), `why` (such as `breakpoint patrol.asl:14`), `speed` (0 for the virtual clock),
     `cannot`: a list of things that a pause does not stop; `agent`, `intention`, `file` and `line` of the step before which
-    an agent is held (`""` and 0 if none); `breakpoints`, a list of `line`, `plan`, `event` or `condition` with their
-    parameters
+    an agent is held (`""` and 0 if none), or the `event`; `breakpoints`, a list of `line`, `plan`, `event` or `condition`
+    with their parameters
     """
 
     state: str
@@ -412,6 +412,7 @@ class DebugRecord(EventRecord):
     speed: float | None = None
     cannot: Sequence[str] | None = None
     agent: Maybe = None
+    event: Maybe = None
     file: Maybe = None
     line: int | None = None
     intention: Id = None

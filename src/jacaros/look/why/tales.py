@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import Any, Literal
 
-from jacaros.look.records.records import Data
+from jacaros.look.records.records import Data, is_well_formed
 from jacaros.look.why.about_now import ending_step
 from jacaros.look.why.chains import shown
 from jacaros.look.why.past import AT_ONCE, Past
@@ -159,9 +159,12 @@ class Teller:
 
     def take(self, t: float, event: str, data: Data) -> None:
         """Take the next record."""
+        is_other = event == "property" and data.get("name") != "question"
+        if is_other or not (event in self._take or event in _WORLD) or not is_well_formed(event, data):
+            return
         if event in self._take:
             self._take[event](t, data)
-        elif event in _WORLD:
+        else:
             rank, level, text = _WORLD[event]
             self._tell(event, rank, t, text.format_map(data), level, robot=str(data.get("robot") or ""))
 

@@ -1,4 +1,4 @@
-import { button, element, setText } from "./elements.js";
+import { button, element, rounded, setText } from "./elements.js";
 import { propertyText } from "./environment.js";
 import { momentButton, showWhy, whyButton } from "./jumps.js";
 import { shortName } from "./link_words.js";
@@ -81,7 +81,8 @@ function properties(context) {
     nodes(artifact, t) {
       const rows = artifact.propertiesAt(t).map((property) => {
         const row = button("belief", () => showWhy(context, { artifact: artifact.path, cause: property.cause || undefined }),
-          element("span", "sign", artifact.isRecent(property, t) ? "+" : ""), element("code", "", propertyText(property)), element("span", "by"), age(property.since));
+          element("span", "sign", artifact.isRecent(property, t) ? "+" : ""), element("code", "", rounded(propertyText(property))), element("span", "by"), age(property.since));
+        row.title = propertyText(property);
         const plot = context.curves.button(propertyKeys(artifact.path, property), propertyText(property));
         return element("li", artifact.isRecent(property, t) ? "recent" : "", keyed(`property ${property.id}`, row), ...(plot ? [keyed(`plot ${property.id}`, plot)] : []));
       });

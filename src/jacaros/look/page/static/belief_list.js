@@ -1,4 +1,4 @@
-import { button, element } from "./elements.js";
+import { button, element, rounded } from "./elements.js";
 import { showWhy } from "./jumps.js";
 import { placeName } from "./link_words.js";
 import { keyed, moveByArrows } from "./refill.js";
@@ -6,6 +6,7 @@ import { age } from "./section.js";
 import { beliefKeys } from "./series_sources.js";
 
 const MOST = 200;  // beliefs that are shown in one list
+const MACHINERY = /^(?:focusing|joinedWsp|joined|current_wsp|connected)(?=\(|\[|$)/;  // what artifacts say about themselves
 const ANNOTATION = /\[[^\]]*source\([^)]*\)[^\]]*\]$/;
 
 /** The beliefs of an agent with a filter; recent changes come first and are marked. */
@@ -29,7 +30,8 @@ export class BeliefList {
 
   nodes(mind, t) {
     const wanted = this.filter.value.trim().toLowerCase(), fits = ({ belief }) => belief.toLowerCase().includes(wanted);
-    const held = mind.beliefsAt(t).filter(fits), gone = mind.beliefsGone(t).filter(fits);
+    const fitting = mind.beliefsAt(t).filter(fits), machinery = wanted ? [] : fitting.filter(({ belief }) => MACHINERY.test(belief));
+    const held = fitting.filter((each) => !machinery.includes(each)), gone = mind.beliefsGone(t).filter(fits);
     const before = replaced(held, gone, mind, t);
     const rank = (belief) => (mind.isRecent(belief, t) ? 0 : 1);
     held.sort((a, b) => rank(a) - rank(b));
@@ -38,17 +40,31 @@ export class BeliefList {
       ...held.slice(0, MOST).map((belief) => this.row(mind, belief, rank(belief) ? "" : "recent", before.get(functor(belief)))),
     ];
     this.filter.hidden = mind.beliefs.at(t).size < 6 && !wanted;
-    if (!rows.length) return [element("p", "empty", wanted ? `No belief contains “${wanted}”.` : "No beliefs.")];
+    if (!rows.length && !machinery.length) return [element("p", "empty", wanted ? `No belief contains “${wanted}”.` : "No beliefs.")];
+    const nodes = [this.list(rows)];
+    if (held.length > MOST) nodes.push(element("p", "empty", `${held.length - MOST} more: use the filter.`));
+    if (machinery.length) nodes.push(this.folded(mind, machinery));
+    return nodes;
+  }
+
+  list(rows) {
     const list = element("ul", "beliefs", ...rows);
     moveByArrows(list, ".belief");
-    return held.length > MOST ? [list, element("p", "empty", `${held.length - MOST} more: use the filter.`)] : [list];
+    return list;
+  }
+
+  /** What artifacts and workspaces say about themselves, in one row that unfolds. */
+  folded(mind, machinery) {
+    const names = [...new Set(machinery.map(functor))].join(", ");
+    const summary = element("summary", "", `${machinery.length} about the environment: `, element("code", "", names));
+    return keyed("machinery", element("details", "machinery", summary, this.list(machinery.map((belief) => this.row(mind, belief, "")))));
   }
 
   row(mind, belief, kind, before) {
     const { belief: text, since } = belief, key = `belief ${kind === "gone" ? "-" : ""}${text}`;
     const main = text.replace(ANNOTATION, ""), sign = { recent: "+", gone: "−" }[kind] ?? "";
-    const name = element("span", "", element("code", "", main));
-    if (before && kind === "recent") name.append(element("s", "was", before.belief.replace(ANNOTATION, "")));
+    const name = element("span", "", element("code", "", rounded(main)));
+    if (before && kind === "recent") name.append(element("s", "was", rounded(before.belief.replace(ANNOTATION, ""))));
     const row = button("belief", () => this.choose(mind, belief), element("span", "sign", sign), name, element("span", "by", ...this.by(belief, text)), age(since));
     row.title = `${kind === "gone" ? "removed: " : ""}${text}`;
     const item = element("li", kind, keyed(key, row));
@@ -67,11 +83,11 @@ export class BeliefList {
     return [cause ? "" : since < 0.5 ? "initial" : ""];
   }
 
-  choose(mind, { cause, file, line }) {
+  choose(mind, { belief, cause, intention, file, line, since }) {
     if (cause) showWhy(this.context, { agent: mind.name, cause });
     else if (file) {
-      this.context.selection.choose({ agent: mind.name, file, line });
-      this.context.open("program");
+      const step = { agent: mind.name, intention, file, line, t: since, what: `which changed ${rounded(belief.replace(ANNOTATION, ""))}` };
+      showWhy(this.context, { agent: mind.name, file, line, cause: this.context.causes.ofStep(step, (id) => mind.plan(id)) });
     } else this.context.selection.choose({ agent: mind.name });
   }
 }

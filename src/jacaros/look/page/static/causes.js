@@ -1,6 +1,6 @@
 import { indexAt } from "./track.js";
 
-const LONGEST = 60;  // links of a chain that are shown
+const LONGEST = 2000;  // links of a chain: rounds of a loop are folded where it is shown
 const MOST = 120;  // effects that are shown
 const LIMIT = 100000;  // links that are kept: a live page may be open for days
 
@@ -65,6 +65,15 @@ export class Causes {
     const link = this.links.get(cause);
     if (!link) return;
     link.beliefs = [...(link.beliefs ?? []).slice(-7), { t, agent, op, belief }];
+  }
+
+  /** The id of the link of a step that only changed a belief, which no record has; `plan` finds plans by their ids. */
+  ofStep(step, plan) {
+    const { agent, intention, file, line, t } = step, id = `${agent} ${file}:${line} ${t}`;
+    const covers = ({ chosen }) => { const { file: of, line: first, end } = plan(chosen) ?? {}; return of === file && first <= line && line <= (end ?? first); };
+    const fits = (link) => link.kind === "event" && link.agent === agent && (link.intention ?? intention) === intention && covers(link);
+    if (!this.links.has(id)) this.links.set(id, { ...step, id, kind: "act", parent: this.last(t, 1, fits)[0]?.id ?? 0 });
+    return id;
   }
 
   get(id) { return this.links.get(id); }

@@ -5,6 +5,8 @@ import { keyed, moveByArrows, refill } from "./refill.js";
 import { WhyQuestion } from "./why_question.js";
 
 const LATELY = 40;  // links that are listed when none is selected
+const LONGEST = 60;  // lines of a chain
+const LONGEST_ROUND = 12;  // links of a round of a loop
 const LEAVES = new Set(["command", "operation", "event", "act"]);
 
 /** Why: the causes of what is selected back to the sensor, its effects forward, and the decisions on the way. */
@@ -35,13 +37,26 @@ export class CausesView {
     const nodes = [keyed("back", back), element("h2", "asked", linkWords(link, this.minds, t)), this.place(link, "asked")];
     if (link.kind === "event") nodes.push(...this.decision(link));
     nodes.push(element("h3", "", "Because of"));
-    if (chain.length > 1) nodes.push(element("ol", "chain", ...chain.slice(1).map((each) => this.item(each, t))));
+    if (chain.length > 1) nodes.push(element("ol", "chain", ...this.folded(chain.slice(1), t)));
     else nodes.push(element("p", "empty", link.parent ? "The cause was not recorded." : "Nothing before it: the chain begins here."));
     nodes.push(element("h3", "", "Led to"));
     if (forward.length) nodes.push(element("ol", "effects", ...commandsJoined(forward).map((each) => this.item(each.link, t, each))));
     else nodes.push(element("p", "empty", "Nothing has happened yet."));
     nodes.push(...this.beliefs(link));
     return nodes;
+  }
+
+  /** A chain in which the newest round of a loop stands for the earlier ones. */
+  folded(chain, t) {
+    const same = (link) => JSON.stringify([link.kind, link.agent, linkPlace(link, this.minds) ?? linkWords(link, this.minds, t).replace(/[-\d.]+/g, "#")]);
+    const places = chain.map(same), items = [];
+    for (let at = 0; at < chain.length;) {
+      const [size, rounds] = loop(places, at);
+      items.push(...chain.slice(at, at + size).map((each) => this.item(each, t)));
+      at += size * rounds;
+      if (rounds > 1) items.push(element("li", "rounds", element("time", "", clock(chain[at - 1].t)), `${rounds - 1} earlier rounds like this`));
+    }
+    return items.slice(0, LONGEST);
   }
 
   place(link, key) {
@@ -113,6 +128,16 @@ export class CausesView {
     }
     return (link) => LEAVES.has(link.kind);
   }
+}
+
+/** How many links the loop has that begins at `at`, and the number of its rounds; 1 and 1 without one. */
+function loop(places, at) {
+  for (let size = 1; size <= LONGEST_ROUND; size++) {
+    let n = 0;
+    while (at + size + n < places.length && places[at + n] === places[at + size + n]) n += 1;
+    if (n >= size * 2) return [size, Math.floor(n / size) + 1];
+  }
+  return [1, 1];
 }
 
 /** Effects with the commands of one operation joined: the first one knows how many `more` there were, `until` when. */

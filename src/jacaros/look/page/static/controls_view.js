@@ -61,14 +61,15 @@ export class ControlsView {
   }
 
   showState(state) {
-    const stamp = `${state.state} ${state.why} ${state.cannot?.join()}`;
+    const stamp = `${state.state} ${state.why} ${state.event} ${state.cannot?.join()}`;
     if (stamp === this.stamp) return;
     this.stamp = stamp;
     this.state.hidden = state.state !== "paused";
     if (this.state.hidden) return;
     const why = state.why && state.why !== "pause" ? ` (${state.why.replace(/\S*\/(?=\S+:\d)/, "")})` : "";
     const words = [element("b", "", "❚❚ Paused"), why];
-    if (state.agent) words.push(` before ${state.file ? "a step" : "an event"} of ${state.agent} `);
+    if (state.event) words.push(" before the event ", element("code", "", state.event), ` of ${state.agent}`);
+    else if (state.agent) words.push(state.file ? ` before a step of ${state.agent} ` : ` after a turn of ${state.agent}`);
     if (state.file) words.push(placeButton(this.context, state, "held"));
     const parts = [element("p", "", ...words)];
     if (state.cannot?.length) parts.push(element("p", "", "Not paused:"), element("ul", "", ...state.cannot.map((each) => element("li", "", each))));

@@ -34,6 +34,9 @@ export function clock(t) {
 /** A number with `digits` decimals, without a minus before 0. */
 export function decimals(value, digits) { return (Number(value.toFixed(digits)) + 0).toFixed(digits); }
 
+/** A text with its long numbers rounded to five digits: lists are for reading, and hovering shows the full text. */
+export function rounded(text) { return text.replace(/-?\d+\.\d{5,}(?:e[+-]?\d+)?/gi, (number) => String(Number(Number(number).toPrecision(5)))); }
+
 const colours = new Map();  // by theme and name: asking the document for a style may cost a layout
 
 /** A colour of the theme, such as `themeColor("wall")`. */

@@ -68,6 +68,7 @@ export function startPage({ live, commands }) {
   const run = new Run(models), selection = new Selection(), time = new Time(run, live);
   const context = { run, selection, commands, time, open: (panel) => tabs.open(panel), actions: new Actions(), axis: new TimeAxis(time) };
   context.curves = new CurveChoice(sources, thresholds, time);
+  context.causes = causes;
   context.breakpoints = new Breakpoints(context, debugging);
   const at = (id) => document.getElementById(id);
 
@@ -108,6 +109,7 @@ export function startPage({ live, commands }) {
     page.chooseTheme(isDark() ? "light" : "dark");
     remember("theme", document.documentElement.dataset.theme);
   });
+  tabs.chosen ??= "agents";
   story.onTold(() => {  // a replay opens with its story, at the first failure
     if (time.canBeLive || fragment().has("t")) return;
     tabs.chosen = "story";

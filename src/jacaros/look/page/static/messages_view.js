@@ -1,5 +1,5 @@
 import { draggable } from "./curve_choice.js";
-import { button, clock, element } from "./elements.js";
+import { button, clock, element, rounded } from "./elements.js";
 import { showWhy } from "./jumps.js";
 import { keyed, moveByArrows, refill } from "./refill.js";
 import { messageKeys } from "./series_sources.js";
@@ -38,7 +38,7 @@ export class MessagesView {
   }
 
   draw(shown, t) {
-    const agents = busiest(shown), left = shown.filter((each) => !agents.includes(each.from) || !agents.includes(each.to));
+    const agents = talking(shown), left = shown.filter((each) => !agents.includes(each.from) || !agents.includes(each.to));
     this.note.hidden = shown.length > 0 && !left.length;
     this.note.textContent = shown.length ? `${left.length} messages of other agents are not in the chart: select an agent.` : "No messages yet.";
     this.chart.style.setProperty("--columns", String(agents.length));
@@ -54,7 +54,7 @@ export class MessagesView {
     const from = agents.indexOf(message.from), to = agents.indexOf(message.to), first = Math.min(from, to), last = Math.max(from, to);
     const text = `${message.performative} ${message.content}`, isRead = message.read <= t;
     const arrow = button(`arrow ${from < to ? "right" : from > to ? "left" : "self"}${isRead ? "" : " unread"}`,
-      () => showWhy(this.context, { agent: message.from, cause: message.id }), element("span", "", element("b", "", message.performative), ` ${message.content}`));
+      () => showWhy(this.context, { agent: message.from, cause: message.id }), element("span", "", element("b", "", message.performative), ` ${rounded(message.content)}`));
     arrow.style.gridColumn = from === to ? `${from + 2} / span 1` : `${first + 2} / ${last + 3}`;
     arrow.style.setProperty("--span", String(Math.max(1, last - first + 1)));
     arrow.title = text;
@@ -65,10 +65,11 @@ export class MessagesView {
   }
 }
 
-/** The agents with most of the messages, in the order in which they first appear. */
-function busiest(messages) {
-  const counts = new Map();
-  for (const { from, to } of messages) for (const each of [from, to]) counts.set(each, (counts.get(each) ?? 0) + 1);
-  const kept = new Set([...counts].sort((a, b) => b[1] - a[1]).slice(0, MOST).map(([agent]) => agent));
-  return [...counts.keys()].filter((agent) => kept.has(agent));
+/** The agents that talk now: those of the newest messages, in the order of their names. */
+function talking(messages) {
+  const kept = new Set();
+  for (const { from, to } of messages.toReversed()) {
+    if (new Set([...kept, from, to]).size <= MOST) kept.add(from).add(to);
+  }
+  return [...kept].sort((a, b) => a.localeCompare(b, undefined, { numeric: true }));
 }

@@ -1,6 +1,7 @@
 """Breakpoints: where a debugger stops a run, before an event is handled or a step is run."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import Any
 
 from jacaros.agents.language import nodes
@@ -21,9 +22,11 @@ from jacaros.agents.mind.state.intention import (
 )
 from jacaros.agents.mind.state.plan import Plan, StepInfo
 from jacaros.agents.mind.state.triggers import EventAnnotations, Goal, literal_of
+from jacaros.agents.terms.substitution import resolve
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.unifier import Trail, undo, unify
 from jacaros.agents.terms.values import annotations_of, functor_of
+from jacaros.look.records.words import shown
 from jacaros.runtime.errors import UsageError
 
 MOST_STEPS = 1_000
@@ -38,6 +41,11 @@ class Breakpoint:
     """
 
     text: str
+
+    @property
+    def met(self) -> str:
+        """Its text, with the values that met it."""
+        return self.text
 
     def data(self) -> dict[str, Any]:
         """Return plain data that describes it, for `breakpoint_at`."""
@@ -180,6 +188,11 @@ class ConditionBreakpoint(Breakpoint):
         self.condition, self.agent = condition, agent
         self.text = f"{condition} of {agent}"
         self._held: bool | None = None
+        self._values = ""
+
+    @property
+    def met(self) -> str:
+        return f"{self.text} with {self._values}" if self._values else self.text
 
     def data(self) -> dict[str, Any]:
         return {"condition": self.condition, "agent": self.agent}
@@ -193,11 +206,13 @@ class ConditionBreakpoint(Breakpoint):
 
     def _holds(self, agent: Circumstance) -> bool:
         """Return whether the formula holds now; False if it cannot be evaluated, or the search takes too long."""
-        try:
-            with reading(agent, MOST_STEPS) as view:
-                return any(True for _ in view.answers(lower(self._formula, Variables().__getitem__)))
-        except Exception:
-            return False
+        names = Variables()
+        with suppress(Exception), reading(agent, MOST_STEPS) as view:
+            for _ in view.answers(lower(self._formula, names.__getitem__)):
+                values = ((name, resolve(each)) for name, each in names.items() if name[0] != "_")
+                self._values = ", ".join(f"{name}={shown(value)}" for name, value in values)
+                return True
+        return False
 
     def meets_event(self, agent: Circumstance, event: Event) -> bool:
         return self.becomes_true(agent)

@@ -8,9 +8,10 @@ from typing import Any, Literal, get_args
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules.cycle import observe_steps
 from jacaros.agents.mind.state.circumstance import Circumstance
-from jacaros.agents.mind.state.intention import PLAN, STEP, Event, Intention
+from jacaros.agents.mind.state.intention import EVENT_GOAL, PLAN, STEP, Event, Intention
 from jacaros.agents.mind.state.triggers import Goal
 from jacaros.agents.terms.values import Annotations
+from jacaros.look.records.words import shown_event
 from jacaros.robots.ros.guarded import guarded_by
 from jacaros.runtime.clock import Clock, WallClock, outside_run
 from jacaros.runtime.errors import UsageError
@@ -48,6 +49,7 @@ class DebugState:
         speed: seconds of the run's clock per second of real time; 0.0 for the virtual clock.
         cannot: what a pause does not stop, in words.
         agent: the agent that is held before an event or a step. Empty without one.
+        event: the event before which it is held, such as ``+battery(57)``. Empty for a step.
         file, line: location of the step before which it is held. Empty and 0 for an event.
         intention: number of its intention; 0 without one.
         breakpoints: the breakpoints, as data for `Debugger.add_breakpoint`.
@@ -58,6 +60,7 @@ class DebugState:
     speed: float = 1.0
     cannot: tuple[str, ...] = ()
     agent: str = ""
+    event: str = ""
     file: str = ""
     line: int = 0
     intention: int = 0
@@ -276,7 +279,7 @@ class Debugger:
         why = self._met(agent, lambda each: each.meets_event(agent, event)) or self._why_before(
             agent, "event"
         )
-        return self._hold(agent, why, None)
+        return self._hold(agent, why, None, event[EVENT_GOAL])
 
     def holds_step(self, agent: Circumstance, intention: Intention) -> bool:
         """Return whether *agent* is held before it runs the next step of *intention*."""
@@ -299,7 +302,7 @@ class Debugger:
     def _met(self, agent: Circumstance, test: Callable[[Breakpoint], bool]) -> str:
         # Evaluate all: conditions remember at each evaluation whether they hold.
         met = list(self._noted.pop(agent.name, ()))
-        met += [each.text for each in self._breakpoints.values() if test(each)]
+        met += [each.met for each in self._breakpoints.values() if test(each)]
         return f"breakpoint {', '.join(met)}" if met else ""
 
     def _why_before(self, agent: Circumstance, what: StepKind) -> str:
@@ -311,14 +314,19 @@ class Debugger:
             return "" if self._stepped_from.get(agent.name) == agent.counts.cycles else "step"
         return "step" if wanted == what else ""
 
-    def _hold(self, agent: Circumstance, why: str, intention: Intention | None) -> bool:
+    def _hold(
+        self, agent: Circumstance, why: str, intention: Intention | None, event: Goal | None = None
+    ) -> bool:
         if not why:
             return False
         file, line, number = "", 0, 0
+        told = "" if event is None else shown_event(event)
         if intention is not None:
             number, frame = intention.id, intention.frames[-1]
             file, line = frame[PLAN].file, step_line(getattr(frame[STEP], "info", None))
-        self._stop(DebugState("paused", why, agent=agent.name, file=file, line=line, intention=number))
+        self._stop(
+            DebugState("paused", why, agent=agent.name, event=told, file=file, line=line, intention=number)
+        )
         return True
 
     # ---- the run itself

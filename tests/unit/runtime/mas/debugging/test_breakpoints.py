@@ -128,7 +128,7 @@ async def test_a_condition_becomes_true_by_a_percept_that_no_plan_handles(mas: M
     assert not debugger.paused
     bob.perceive("battery(10)")
     state = await debugger.wait_until_paused()
-    assert state.why == "breakpoint battery(B) & B < 20 of bob"
+    assert state.why == "breakpoint battery(B) & B < 20 of bob with B=10"
 
 
 def test_an_endless_condition_does_not_block_the_run() -> None:
