@@ -1,10 +1,10 @@
-const TYPING = "input:not([type=range]), select, textarea, [contenteditable]";
+const OWN_KEYS = "input:not([type=range]), select, textarea, [contenteditable], .listing";
 
-/** The keys that move through time, wherever the focus is but in a field; `?` shows all keys. */
+/** The keys that move through time, wherever the focus is but in a field or a program; `?` shows all keys. */
 export function listenToKeys(time) {
   document.getElementById("help").addEventListener("click", showKeys);
   document.addEventListener("keydown", (event) => {
-    if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || event.target.matches(TYPING)) return;
+    if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || event.target.matches(OWN_KEYS)) return;
     const step = event.shiftKey ? 10 : 1;
     const act = {
       " ": () => time.toggle(), ArrowLeft: () => time.go(time.now - step), ArrowRight: () => time.go(time.now + step),

@@ -24,6 +24,8 @@ export class ProgramView {
     this.whose = element("span", "whose");
     this.text = element("div", "listing");
     this.text.setAttribute("role", "list");
+    this.text.setAttribute("aria-label", "Lines");
+    this.text.tabIndex = 0;  // long lines are scrolled with the arrow keys
     this.legend = legend();
     root.append(element("div", "program-head", this.files, this.whose, element("label", "only", this.follow, " follow the current step")), this.text, this.legend);
     moveByArrows(this.text, ".number");

@@ -16,7 +16,7 @@ export class TimeView {
     this.body.prepend(this.ruler);
     this.body.append(this.now);
     this.tools = element("div", "tools", this.tool("−", "Show a longer time", () => this.axis.zoom(1 / 1.5)),
-      this.tool("+", "Show a shorter time", () => this.axis.zoom(1.5)), this.tool("All", "Show the whole run", () => this.axis.all()));
+      this.tool("+", "Show a shorter time", () => this.axis.zoom(1.5)), this.tool("All", "All of the run", () => this.axis.all()));
     root.prepend(element("header", "", element("h2", "", "Time"), this.tools));
     this.ruler.addEventListener("click", ({ offsetX }) => this.time.go(this.axis.t(offsetX)));
     root.tabIndex = 0;
