@@ -48,6 +48,7 @@ RUNS: dict[str, list[list[str]]] = {
         ["plot", "r.jsonl", EVIL, "-o", "x.svg"],
         ["plot", "damaged.jsonl", "battery", "-o", f"{EVIL}/x.svg"],
     ],
+    "export": [["export", "r.jsonl", "-o", EVIL], ["export", "damaged.jsonl", "-o", f"{EVIL}/x.mcap"]],
     "replay": [["replay", "r.jsonl", "--against", "other.asl"], ["replay", "r.jsonl", "--against", EVIL]],
     "world": [["world", "show", "w.yaml"], ["world", "list", EVIL]],
     "sim": [["sim", "w.yaml"], ["sim", EVIL]],

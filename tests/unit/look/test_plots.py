@@ -86,7 +86,10 @@ def test_an_unknown_name_lists_the_known_ones(name: str) -> None:
 def drawn(
     *curves: Series, failed: list[Failure] | None = None, end: float = 2.0, start: float = 0.0
 ) -> ElementTree.Element:
-    panel = Panel([(each.full_name, each) for each in curves], [("20 & less", 20.0)])
+    panel = Panel(
+        [(each.full_name, each) for each in curves],
+        [("20 & less", Series("limit", "", "20", "", [(0.0, 20.0)]))],
+    )
     return ElementTree.fromstring(plot_svg([panel], failed or [], (start, end), "<run>"))
 
 

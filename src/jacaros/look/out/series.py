@@ -20,7 +20,7 @@ _BELIEF = re.compile(r"(~?[a-z]\w*)\(")
 _ARGUMENT = re.compile(r"""(?:[^,()\[\]{}"]|"(?:[^"\\]|\\.)*"|[([{][^()\[\]{}]*[)\]}])+""")
 _NAME = re.compile(r"(?:(?P<owner>[^:]+):)?(?P<name>[^:]+?)(?:\.(?P<field>\w+))?")
 _COORDINATES = {"x": "1", "y": "2", "yaw": "3"}
-_OF_ROBOTS = {"x": "m", "y": "m", "yaw": "°", "battery": "%", "speed": "m/s", "laser": "m"}
+ROBOT_FIELDS = {"x": "m", "y": "m", "yaw": "°", "battery": "%", "speed": "m/s", "laser": "m"}
 """Fields of robots, with their units; ``laser`` is the distance of the nearest echo."""
 _UNITS = {"battery": "%"}
 """Units of beliefs and properties that many programs share."""
@@ -63,7 +63,7 @@ class Series:
     @property
     def unit(self) -> str:
         """The unit, if it is known."""
-        return _OF_ROBOTS[self.field] if self.source == "robot" else _UNITS.get(self.name, "")
+        return ROBOT_FIELDS[self.field] if self.source == "robot" else _UNITS.get(self.name, "")
 
     @property
     def full_name(self) -> str:
@@ -73,6 +73,11 @@ class Series:
             if self.source == "robot"
             else f"{self.owner}:{self.name}.{self.field}"
         )
+
+    @property
+    def changes(self) -> bool:
+        """Whether it has several values."""
+        return len({value for _, value in self.points if not math.isnan(value)}) > 1
 
     def between(self, start: float, end: float) -> "Series":
         """Return the part from *start* to *end*, beginning with the value at *start*."""
@@ -142,7 +147,7 @@ def _of_frames(recording: Recording) -> Iterator[Sample]:
 
 
 def all_series(recording: Recording) -> list[Series]:
-    """Return all numbers that change.
+    """Return all numbers.
 
     Beliefs of which an agent has several at a time, such as the places of a map, are not one number over time.
     """
@@ -158,14 +163,8 @@ def all_series(recording: Recording) -> list[Series]:
         elif source == "laser":
             fields.take(t, ["laser"], values)
         else:
-            fields.take(t, _OF_ROBOTS if source == "robot" else map(str, count(1)), values)
-    return [
-        series
-        for each in found.values()
-        if not each.is_many
-        for series in each.series.values()
-        if _varies(series)
-    ]
+            fields.take(t, ROBOT_FIELDS if source == "robot" else map(str, count(1)), values)
+    return [series for each in found.values() if not each.is_many for series in each.series.values()]
 
 
 class _Fields:
@@ -192,10 +191,6 @@ class _Fields:
             series.points.append((t, math.nan))
 
 
-def _varies(series: Series) -> bool:
-    return len({value for _, value in series.points if not math.isnan(value)}) > 1
-
-
 def named(known: Sequence[Series], name: str) -> list[Series]:
     """Return the series that a name means: ``[OWNER:]NAME[.FIELD]``.
 
@@ -214,7 +209,7 @@ def named(known: Sequence[Series], name: str) -> list[Series]:
             found = _with_field((each for each in of_name if each.source == source), parts["field"])
             if found:
                 return found
-    names = [*_short_names(known)]
+    names = [*_short_names(each for each in known if each.changes)]
     near = suggestion(name, names)
     listed = ", ".join(names[:_MOST_NAMES]) + (", ..." if len(names) > _MOST_NAMES else "")
     help = f"{near and near + ' '}series of this recording: {listed or 'none'}"

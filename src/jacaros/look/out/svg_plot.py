@@ -13,8 +13,9 @@ from jacaros.look.out.series import Series
 
 _STYLE = """
   text{font:12px system-ui,sans-serif;fill:#222} .grid{stroke:#e3e3e3} .axis{stroke:#222;fill:none}
-  .curve{fill:none;stroke-width:1.5;stroke-linejoin:round} .limit{stroke:#555;stroke-dasharray:6 3}
-  .note{font-size:11px;fill:#555} .failed{stroke:#c00;fill:#c00} .handled{stroke:#c00;fill:#fff}
+  .curve{fill:none;stroke-width:1.5;stroke-linejoin:round} .limit{fill:none;stroke:#555;stroke-dasharray:6 3}
+  .note{font-size:11px;fill:#555;stroke:#fff;stroke-width:3px;paint-order:stroke}
+  .failed{stroke:#c00;fill:#c00} .handled{stroke:#c00;fill:#fff}
   .faint{stroke-opacity:.3}
 """
 _COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000")
@@ -40,11 +41,11 @@ class Panel:
 
     Attributes:
         curves: labels and series.
-        limits: labels and values of thresholds.
+        limits: labels and series of values with which programs compare a curve.
     """
 
     curves: Sequence[tuple[str, Series]]
-    limits: Sequence[tuple[str, float]] = ()
+    limits: Sequence[tuple[str, Series]] = ()
 
     @property
     def units(self) -> str:
@@ -52,8 +53,14 @@ class Panel:
         return ", ".join(dict.fromkeys(series.unit for _, series in self.curves if series.unit))
 
     def between(self, start: float, end: float) -> "Panel":
-        """Return the panel with the part of its curves from *start* to *end*."""
-        return Panel([(label, series.between(start, end)) for label, series in self.curves], self.limits)
+        """Return the panel from *start* to *end*, without limits that are far from the curves."""
+        both = [
+            [(label, each.between(start, end)) for label, each in of] for of in (self.curves, self.limits)
+        ]
+        low, high = _range(both[0])
+        around = (high - low) / 2
+        near = [each for each in both[1] if low - around <= _range([each])[0] <= high + around]
+        return Panel(both[0], near)
 
 
 def failures(events: Iterable[tuple[float, str, Mapping[str, Any]]]) -> list[Failure]:
@@ -104,9 +111,7 @@ class _Scale:
     """Converts the values of a panel to pixels; the numbers of its axis are *ticks*."""
 
     def __init__(self, panel: Panel, bottom: int) -> None:
-        values = [value for _, series in panel.curves for _, value in series.points if not math.isnan(value)]
-        values += [value for _, value in panel.limits]
-        lowest, highest = min(values, default=0.0), max(values, default=0.0)
+        lowest, highest = _range([*panel.curves, *panel.limits])
         step = _nice((highest - lowest) / 4 or 1.0)
         low, high = math.floor(lowest / step), math.ceil(highest / step)
         self.ticks = [number * step for number in range(low, max(high, low + 1) + 1)]
@@ -115,6 +120,12 @@ class _Scale:
     def y(self, value: float) -> float:
         low, high = self.ticks[0], self.ticks[-1]
         return round(self._bottom - (value - low) / (high - low) * _HEIGHT, 2)
+
+
+def _range(curves: Iterable[tuple[str, Series]]) -> tuple[float, float]:
+    """Return the least and greatest value of curves."""
+    values = [value for _, series in curves for _, value in series.points if not math.isnan(value)]
+    return min(values, default=0.0), max(values, default=0.0)
 
 
 def _nice(least: float) -> float:
@@ -152,12 +163,12 @@ def _panel(sheet: _Sheet, panel: Panel, legend: Sequence[_Entry], bottom: int) -
     if panel.units:
         units, middle = html.escape(panel.units), bottom - _HEIGHT // 2
         yield f'<text transform="translate(14 {middle}) rotate(-90)" text-anchor="middle">{units}</text>'
-    for label, value in panel.limits:
-        yield _line("limit", scale.y(value))
-        yield _text(label, _WIDTH - _RIGHT - 2, scale.y(value) - 4, "end", "note")
     for x, y, label, pen, series in legend:
         yield f'<path class="curve" {pen} d="M{x} {y - 4}h24"/>{_text(label, x + 29, y)}'
         yield f'<path class="curve" {pen} d="{_path(sheet, scale, series)}"/>'
+    for label, series in panel.limits:
+        yield f'<path class="limit" d="{_path(sheet, scale, series)}"/>'
+        yield _text(label, _WIDTH - _RIGHT - 2, scale.y(series.points[-1][1]) - 4, "end", "note")
     yield f'<path class="axis" d="M{_LEFT} {bottom - _HEIGHT}V{bottom}H{_WIDTH - _RIGHT}"/>'
 
 

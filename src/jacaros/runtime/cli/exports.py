@@ -1,5 +1,6 @@
-"""``jacaros plot``: a recorded run outside of the page."""
+"""``jacaros plot`` and ``jacaros export``: a recorded run outside of the page."""
 
+import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ from jacaros.runtime.cli.usage import examples, read_recording, usage_error
 if TYPE_CHECKING:
     from jacaros.look.out.series import Series
     from jacaros.look.out.svg_plot import Panel
+    from jacaros.look.records.recording import Recording
 
 
 @click.command(
@@ -40,6 +42,7 @@ def plot(run: Path, names: tuple[str, ...], output: Path, start: float, end: flo
     robot_1:battery     the same of one agent, or of one artifact
     turtlebot.battery   of a robot: x, y, yaw, battery, speed, laser (distance of the nearest echo)
 
+    Dashed lines are the values that conditions of programs compare a belief with.
     Triangles on the time axis mark goals that failed, hollow ones if a plan handled the failure. For a list of the
     names in the recording, give an unknown one.
     """  # fmt: skip
@@ -49,7 +52,7 @@ def plot(run: Path, names: tuple[str, ...], output: Path, start: float, end: flo
     check_output(output, "picture")
     recording = read_recording(run)
     known = all_series(recording)
-    panels = [_panel(known, each.split(",")) for each in names]
+    panels = [_panel(recording, known, each.split(",")) for each in names]
     end = recording.duration if end is None else end
     if not start < end:
         raise usage_error(f"--from {start:g} is not before the end, {end:g}", "name a part of the recording")
@@ -57,7 +60,9 @@ def plot(run: Path, names: tuple[str, ...], output: Path, start: float, end: flo
     click.echo(f"wrote {output}")
 
 
-def _panel(known: "list[Series]", names: list[str]) -> "Panel":
+def _panel(recording: "Recording", known: "list[Series]", names: list[str]) -> "Panel":
+    """Return the panel of the series with these names, and what programs compare them with."""
+    from jacaros.look.out.limits import limits
     from jacaros.look.out.series import named
     from jacaros.look.out.svg_plot import Panel
 
@@ -65,4 +70,39 @@ def _panel(known: "list[Series]", names: list[str]) -> "Panel":
     for name in names:
         found = named(known, name)
         curves += [(name if len(found) == 1 else f"{each.owner}:{name}", each) for each in found]
-    return Panel(curves)
+    compared = dict(limit for _, each in curves for limit in limits(recording, each, known))
+    return Panel(curves, [*compared.items()])
+
+
+@click.command("export", epilog=examples("jacaros export run.jsonl -o run.mcap"))
+@click.argument("run", type=PATH)
+@option(
+    "-o --output FILE.mcap",
+    "Write the messages to FILE.mcap, and the layout to FILE.json.",
+    PATH,
+    required=True,
+)
+def export(run: Path, output: Path) -> None:
+    """Convert RUN, a recording (`jacaros run FILE --record RUN`), for Foxglove: an MCAP file, and a layout that shows it.
+
+    The file has intentions and operations as states, beliefs and other numbers for plots, the output of agents as a log,
+    and the poses and laser scans of robots. In Foxglove, open the MCAP file, and import the layout from its file.
+    """  # fmt: skip
+    from jacaros.look.out.foxglove import layout, write_mcap
+
+    if output.suffix != ".mcap":
+        raise usage_error(
+            f"expected a file name with the suffix .mcap, found `{output}`",
+            f"-o {output.with_suffix('.mcap')}",
+        )
+    shown = output.with_suffix(".json")
+    check_output(output, "MCAP file")
+    check_output(shown, "layout")
+    recording = read_recording(run)
+    try:
+        with output.open("wb") as file:
+            topics = write_mcap(recording, file)
+    except OSError as error:
+        raise usage_error(f"cannot write `{output}`: {error.strerror}", "name another file") from error
+    write_output(shown, json.dumps(layout(recording, topics), indent=1))
+    click.echo(f"wrote {output} and its layout {shown}")

@@ -44,6 +44,7 @@ COMMANDS = {
         "jacaros.runtime.cli.exports:plot",
         "Draw beliefs and other numbers of a recorded run over time.",
     ),
+    "export": ("jacaros.runtime.cli.exports:export", "Convert a recorded run for Foxglove (MCAP)."),
     "replay": ("jacaros.runtime.cli.recordings:replay", "Replay a recorded run against a changed program."),
     "test": ("jacaros.runtime.cli.test", "Run the tests of agent programs."),
     "sim": ("jacaros.runtime.cli.sim", "Run a robot world as a separate ROS node."),

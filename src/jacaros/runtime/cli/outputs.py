@@ -19,6 +19,8 @@ _BEGINNINGS = {
     "replay page": (b"<!doctype html>",),
     "ground truth": (b'{"kind": "',),
     "picture": (b"<svg",),
+    "MCAP file": (b"\x89mcap0",),
+    "layout": (b'{\n "configbyid"',),
     "map": (b"image:",),
     "map image": (b"p5",),
 }

@@ -1,12 +1,10 @@
-"""``jacaros plot``: files, panels and wrong names."""
+"""``jacaros plot`` and ``jacaros export``: files, panels and wrong names."""
 
 import json
 from pathlib import Path
 
 import pytest
 from command_lab import Outcome, Told
-
-COMMAND = ("plot",)
 
 
 @pytest.fixture
@@ -23,7 +21,10 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_each_argument_is_a_panel(run: Path, told: Told) -> None:
-    assert told("run.jsonl", "battery", "one:battery,two:battery.x", "-o", "run.svg") == "wrote run.svg\n"
+    assert (
+        told("plot", "run.jsonl", "battery", "one:battery,two:battery.x", "-o", "run.svg")
+        == "wrote run.svg\n"
+    )
     svg = Path("run.svg").read_text(encoding="utf-8")
     assert svg.count(">%</text>") == 2
     for label, times in (("one:battery", 2), ("two:battery", 1), ("two:battery.x", 1)):
@@ -31,8 +32,8 @@ def test_each_argument_is_a_panel(run: Path, told: Told) -> None:
 
 
 def test_a_part_is_drawn_alone(run: Path, told: Told) -> None:
-    told("run.jsonl", "one:battery", "-o", "all.svg")
-    told("run.jsonl", "one:battery", "-o", "part.svg", "--from", "1", "--to", "1.5")
+    told("plot", "run.jsonl", "one:battery", "-o", "all.svg")
+    told("plot", "run.jsonl", "one:battery", "-o", "part.svg", "--from", "1", "--to", "1.5")
     assert ">80</text>" in Path("all.svg").read_text(encoding="utf-8")
     assert ">80</text>" not in Path("part.svg").read_text(encoding="utf-8")
 
@@ -48,7 +49,32 @@ def test_a_part_is_drawn_alone(run: Path, told: Told) -> None:
     ],
 )
 def test_wrong_usage_is_reported(run: Path, outcome: Outcome, arguments: list[str], error: str) -> None:
-    code, output, errors = outcome("run.jsonl", "-o", "run.svg", *arguments)
+    code, output, errors = outcome("plot", "run.jsonl", "-o", "run.svg", *arguments)
     assert (code, output) == (2, "")
     assert errors.startswith(f"error: {error}")
     assert not Path("run.svg").exists()
+
+
+def test_an_export_writes_the_messages_and_a_layout(run: Path, told: Told) -> None:
+    for _ in range(2):  # its own files may be replaced
+        assert told("export", "run.jsonl", "-o", "run.mcap") == "wrote run.mcap and its layout run.json\n"
+    assert Path("run.mcap").read_bytes().startswith(b"\x89MCAP0\r\n")
+    paths = json.loads(Path("run.json").read_text(encoding="utf-8"))["configById"]["Plot!battery"]["paths"]
+    assert [each["value"] for each in paths] == ["/beliefs/one/battery.arg1", "/beliefs/two/battery.arg1"]
+
+
+@pytest.mark.parametrize(
+    ("output", "error"),
+    [
+        ("run.json", "expected a file name with the suffix .mcap, found `run.json`\n  = help: -o run.mcap"),
+        ("package.mcap", "`package.json` exists and is not a layout"),
+        ("no/run.mcap", "folder does not exist: `no`"),
+    ],
+)
+def test_an_export_overwrites_nothing_else(run: Path, outcome: Outcome, output: str, error: str) -> None:
+    Path("package.json").write_text('{"name": "mine"}', encoding="utf-8")
+    code, _, errors = outcome("export", "run.jsonl", "-o", output)
+    assert code == 2
+    assert errors.startswith(f"error: {error}")
+    assert Path("package.json").read_text(encoding="utf-8") == '{"name": "mine"}'
+    assert not list(Path().glob("*.mcap"))
