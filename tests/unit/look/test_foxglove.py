@@ -118,6 +118,8 @@ RECORDING = Recording(
         event(3.0, "goal", goal="!patrol(1)", state="failed", intention=1),
         intention(3.0, 1, state="over"),
         intention(4.0, 2, state="over"),
+        event(3.0, "resource", resource="wheels", holder="[guard] !go(dock)"),
+        event(3.5, "resource", resource="wheels", holder=None),
         event(4.0, "log", level="warning", text="lost"),
         event(5.0, "laser", robot="r2 d2", step=0.5, ranges=[100, 0], **{"from": -1.0}),
     ],
@@ -134,8 +136,9 @@ def test_a_lane_shows_one_intention_at_a_time() -> None:
     assert [each["now"] for each in of("/intentions/guard/patrol_2")] == ["+!patrol(2)[source(self)]", ""]
 
 
-def test_operations_numbers_output_and_robots_have_topics() -> None:
+def test_operations_resources_numbers_output_and_robots_have_topics() -> None:
     assert [each["now"] for each in of("/operations/wheels")] == ["go(1)", "failed: stuck"]
+    assert [each["now"] for each in of("/resources/wheels")] == ["[guard] !go(dock)", ""]
     assert of("/beliefs/guard/battery") == [{"arg1": 80}]
     assert of("/robots/r2_d2") == [{"x": 1.0, "y": 2.0, "yaw": 0.0, "battery": 90.0, "speed": 0.0}]
     assert [(each["level"], each["name"], each["message"]) for each in of("/log")] == [

@@ -85,6 +85,9 @@ class _Lanes:
                 root = re.sub(r"^[^\w~]*|[(\[].*", "", data["stack"][0]["goal"], flags=re.DOTALL)
                 key = data["agent"], data["id"]
                 yield self._show(t, key, _topic("intentions", data["agent"], root), _doing(data))
+            elif kind == "resource":
+                topic = _topic("resources", data["resource"])
+                yield Message(t, topic, "jacaros.Lane", {"now": data["holder"] or ""})
             elif kind == "operation" and data["state"] == "began":
                 yield self._show(
                     t,
