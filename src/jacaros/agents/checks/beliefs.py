@@ -11,11 +11,13 @@
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from math import pi
 from typing import Final
 
 from jacaros.agents.checks.flow import (
     Adder,
+    Key,
     ProgramFlow,
     Reader,
     Value,
@@ -30,18 +32,20 @@ from jacaros.agents.language.cursor import is_slip_of
 from jacaros.agents.language.diagnostics import Diagnostic, problem
 from jacaros.agents.language.lowering import format_term
 from jacaros.agents.language.nodes import nodes_in
-from jacaros.runtime.files.texts import did_you_mean
+from jacaros.runtime.files.texts import close_matches, did_you_mean
 
 MISMATCH: Final = "never-matches"
 UNIT: Final = "wrong-unit"
 
 _SHORTEST: Final = 5
-"""Names shorter than this are too easily similar."""
+"""Names shorter than this are too easily similar; one letter less will do if only letters are swapped."""
 _SHORTEST_PART: Final = 3
 """Parts of names between underscores that are shorter than this are too easily similar."""
 _ENDINGS: Final = "sdr"
 """Letters that make another form of a word."""
-_MOST_OPTIONS: Final = 4
+_FEWEST_FACTS: Final = 3
+"""Of so many facts, the one that differs is probably wrong."""
+_MOST_OPTIONS: Final = 8
 """Number of values that are listed."""
 
 
@@ -70,7 +74,8 @@ def is_misspelt(written: str, meant: str) -> bool:
     names with different first letters, and those that differ in a short part (``pos_x``, ``pos_y``) are names of their
     own.
     """
-    if len(meant) < _SHORTEST or written[0] != meant[0] or not is_slip_of(written, meant):
+    shortest = _SHORTEST - (sorted(written) == sorted(meant))
+    if len(meant) < shortest or written[0] != meant[0] or not is_slip_of(written, meant):
         return False
     if any(character.isdigit() for character in written + meant):
         return False
@@ -104,6 +109,73 @@ def mismatches(flow: ProgramFlow, adders: Mapping[str, Sequence[Adder]]) -> Iter
         yield from _comparisons(clause, variables_of(clause, adders))
 
 
+def unmet_goals(program: nodes.Program, adders: Mapping[str, Sequence[Adder]]) -> Iterator[Diagnostic]:
+    """Return warnings about goals with an argument for which the context of no plan holds."""
+    plans: dict[Key, list[nodes.Plan]] = {}
+    for plan in program.plans:
+        trigger = plan.trigger
+        if (trigger.operator, trigger.kind) == ("+", "!"):
+            if not isinstance(trigger.literal, nodes.Literal):
+                return
+            plans.setdefault(key_of(trigger.literal), []).append(plan)
+    posted = [*program.goals, *(step.goal for step in nodes_in(nodes.Achieve, program.plans))]
+    for goal in posted:
+        if not isinstance(goal, nodes.Literal) or not is_own(goal):
+            continue
+        for place, argument in enumerate(goal.arguments):
+            if value_of(argument, {}).kind:
+                found = [_unmet(plan, place, argument, adders) for plan in plans.get(key_of(goal), ())]
+                if found and (first := found[0]) and all(found):
+                    yield replace(first, message=f"no plan for `!{_text(goal)}`: {first.message}")
+
+
+def _unmet(
+    plan: nodes.Plan, place: int, argument: nodes.Term, adders: Mapping[str, Sequence[Adder]]
+) -> Diagnostic | None:
+    """Explain why the context of a plan for a goal never holds with this argument."""
+    literal, context = plan.trigger.literal, plan.context
+    variable = literal.arguments[place] if isinstance(literal, nodes.Literal) else None
+    parts = nodes.operands(context) if isinstance(context, nodes.And) else [context]
+    for part in parts if isinstance(variable, nodes.Variable) else ():
+        if isinstance(part, nodes.Literal) and variable in part.arguments:
+            filled = tuple([argument if each == variable else each for each in part.arguments])
+            reader = Reader("condition", nodes.replace(part, arguments=filled), plan)
+            name, size = reader.key
+            same = [each for each in adders.get(name, ()) if each.size in (None, size)]
+            return next(_mismatch(reader, same), None)
+    return None
+
+
+def mixed_facts(flow: ProgramFlow) -> Iterator[Diagnostic]:
+    """Return warnings about a string among the atoms of initial beliefs, or an atom among strings."""
+    for adders in flow.adders.values():
+        facts: dict[int, list[nodes.Literal]] = {}
+        for each in adders:
+            if each.how == "fact" and each.literal is not None and is_own(each.literal):
+                facts.setdefault(len(each.literal.arguments), []).append(each.literal)
+        for size, literals in facts.items():
+            for place in range(size if len(literals) >= _FEWEST_FACTS else 0):
+                yield from _odd_one(literals, place)
+
+
+def _odd_one(facts: Sequence[nodes.Literal], place: int) -> Iterator[Diagnostic]:
+    kinds = [value_of(each.arguments[place], {}).kind for each in facts]
+    for kind, usual in (("string", "atom"), ("atom", "string")):
+        if kinds.count(kind) == 1 and kinds.count(usual) == len(kinds) - 1:
+            odd = facts[kinds.index(kind)].arguments[place]
+            name, size = key_of(facts[0])
+            others = f"the other facts `{name}/{size}` have {_KINDS[usual]} here"
+            message = f"`{format_term(odd)}` is {_KINDS[kind]}, but {others}"
+            yield problem(MISMATCH, message, odd.span, _in_kind(odd, Value(usual)))
+
+
+def told_texts(flow: ProgramFlow) -> Iterator[Diagnostic]:
+    """Return warnings about strings that are told: agents refuse them."""
+    for each in flow.texts:
+        message = f"`{format_term(each)}` is a string, which is not a belief: the receiver refuses it"
+        yield problem(MISMATCH, message, each.span, _in_kind(each, Value("atom")))
+
+
 def _mismatch(reader: Reader, same: Sequence[Adder]) -> Iterator[Diagnostic]:
     literal = reader.literal
     for place, argument in enumerate(literal.arguments if same else ()):
@@ -114,12 +186,8 @@ def _mismatch(reader: Reader, same: Sequence[Adder]) -> Iterator[Diagnostic]:
             if wanted.kind in kinds and (reader.denied or reader.how == "deletion"):
                 continue
             has = _described(given, literal, place)
-            is_ = (
-                f"`{format_term(argument)}` is {_KINDS[wanted.kind]}, but "
-                if wanted.kind not in kinds
-                else ""
-            )
-            message = f"`{format_term(literal)}` never matches: {is_}{has}"
+            is_ = f"`{_text(argument)}` is {_KINDS[wanted.kind]}, but " if wanted.kind not in kinds else ""
+            message = f"`{_text(literal)}` never matches: {is_}{has}"
             yield problem(MISMATCH, message, argument.span or literal.span, _help(literal, same, place))
             return
 
@@ -149,18 +217,29 @@ def _described(given: Sequence[Value], literal: nodes.Literal, place: int) -> st
 
 def _help(literal: nodes.Literal, same: Sequence[Adder], place: int) -> str:
     wanted = literal.arguments[place]
-    options = list(dict.fromkeys(option for each in same for option in place_of(each, place).options))
+    given = [place_of(each, place) for each in same]
     if isinstance(wanted, nodes.Literal) and any(
-        place_of(each, place).kind == "number" and not place_of(each, place).options for each in same
+        each.kind == "number" and not each.options for each in given
     ):
-        return f"begin variables with a capital letter: `{format_term(_with_variables(literal, same))}`"
-    return did_you_mean(_written(literal, place, option) for option in options[:_MOST_OPTIONS])
+        return f"begin variables with a capital letter: `{_text(_with_variables(literal, same))}`"
+    options = list(dict.fromkeys(option for each in given for option in each.options))
+    near = close_matches(_text(wanted), options) or options[:_MOST_OPTIONS]
+    before, after = (
+        list(map(_text, part)) for part in (literal.arguments[:place], literal.arguments[place + 1 :])
+    )
+    return did_you_mean(f"{literal.functor}({', '.join([*before, option, *after])})" for option in near)
 
 
-def _written(literal: nodes.Literal, place: int, option: str) -> str:
-    """Write a literal with another argument."""
-    arguments = [format_term(each) for each in literal.arguments]
-    return f"{literal.functor}({', '.join([*arguments[:place], option, *arguments[place + 1 :]])})"
+def _text(node: nodes.Node) -> str:
+    """Write a term as people do."""
+    match node:
+        case nodes.Variable(unnamed=True):
+            return "_"
+        case nodes.Literal(functor=functor, arguments=arguments) if arguments:
+            return f"{'~' * node.negated}{functor}({', '.join(map(_text, arguments))})"
+        case nodes.Relation(operator=operator, left=left, right=right):
+            return f"{_text(left)} {operator} {_text(right)}"
+    return format_term(node)
 
 
 def _with_variables(literal: nodes.Literal, same: Sequence[Adder]) -> nodes.Literal:
@@ -203,9 +282,7 @@ def _comparisons(clause: nodes.Node, variables: Mapping[str, Value]) -> Iterator
                 continue
             wanted = value_of(other, {})
             if wanted.kind and not value.fits(wanted) and wanted.kind != value.kind:
-                message = (
-                    f"`{format_term(relation)}` compares {_KINDS[value.kind]} with {_KINDS[wanted.kind]}"
-                )
+                message = f"`{_text(relation)}` compares {_KINDS[value.kind]} with {_KINDS[wanted.kind]}"
                 yield problem(MISMATCH, message, relation.span, _in_kind(other, value))
             elif isinstance(other, nodes.Number) and (unit := _unit_of(other.value, value)):
                 name, number = format_term(variable), format_term(other)
@@ -268,12 +345,25 @@ def mixed_units(
         adders: all that can give its agent beliefs, by name.
         parameters: the units of the parameters of operations; empty ones are not known.
     """
+    for action in flow.actions:
+        yield from _turns(action, parameters.get(key_of(action), ()))
     clauses = {id(each.clause): each.clause for each in flow.readers if is_own(each.literal)}
     for clause in clauses.values() if parameters else ():
         variables = variables_of(clause, adders)
         for step in nodes_in(nodes.ExternalAction, clause):
             if isinstance(step.action, nodes.Literal):
                 yield from _mixed(step.action, variables, parameters.get(key_of(step.action), ()))
+
+
+def _turns(action: nodes.Literal, wanted: Iterable[str]) -> Iterator[Diagnostic]:
+    """Return warnings about constants that are certainly not in radians."""
+    for argument, unit in zip(action.arguments, wanted, strict=False):
+        if isinstance(argument, nodes.Number) and abs(argument.value) >= _TURN and unit.startswith("radians"):
+            degrees, number = unit.replace("radians", "degrees"), format_term(argument)
+            message = f"`{number}` is in {degrees}, but `{action.functor}` expects {unit}"
+            right = _shown(converted(argument.value, "degrees", "radians"))
+            help = f"write `{right}`, or `unit: degrees` in the mapping file"
+            yield problem(UNIT, message, argument.span, help)
 
 
 def _mixed(

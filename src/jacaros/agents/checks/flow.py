@@ -108,6 +108,7 @@ class ProgramFlow:
         is_open: beliefs, plans or agents come from elsewhere at run time.
         tells_unseen: messages may tell other agents anything.
         actions: the steps that are actions of the environment.
+        texts: strings that are told to other agents, which refuse them.
         files: the program's own files.
     """
 
@@ -120,6 +121,7 @@ class ProgramFlow:
     is_open: bool = False
     tells_unseen: bool = False
     actions: list[nodes.Literal] = field(default_factory=list)
+    texts: list[nodes.String] = field(default_factory=list)
     files: set[str] = field(default_factory=set)
 
 
@@ -455,7 +457,9 @@ class _Collector:
         word = performative.functor if isinstance(performative, nodes.Literal) else ""
         contents = content.items if isinstance(content, nodes.ListTerm) else (content,)
         for each in contents:
-            if not isinstance(each, nodes.Literal):
+            if isinstance(each, nodes.String) and word in _TELLS:
+                self.found.texts.append(each)
+            elif not isinstance(each, nodes.Literal):
                 self.found.tells_unseen |= isinstance(each, nodes.Variable) and word in ("", *_TELLS)
                 self._push(_At(read=True), each)
             elif word in _TELLS or not word:

@@ -91,12 +91,15 @@ def _value(node: ast.expr) -> str:
 
 def described(artifact_type: type, section: str) -> Entries:
     """Return the entries of a section such as ``Properties:`` in the docstrings of the class and its bases."""
-    found: Entries = {}
+    usages = described_usages(artifact_type, section)
+    return {usage.partition("(")[0]: (usage, text) for usage, text in usages}
+
+
+def described_usages(artifact_type: type, section: str) -> Iterator[tuple[str, str]]:
+    """Yield usage and description of all entries of a section; a name may have several numbers of values."""
     for each in reversed(own_classes(artifact_type)):
         for usages, text in _entries(_section(inspect.cleandoc(each.__doc__ or ""), section)):
-            for usage in usages:
-                found[usage.partition("(")[0]] = (usage, text)
-    return found
+            yield from ((usage, text) for usage in usages)
 
 
 def _section(doc: str, wanted: str) -> str:

@@ -54,7 +54,7 @@ class ArtSimBattery(RosArtifact):
         dock_timeout(S): seconds that `operation_recharge` waits for the dock's current (5).
 
     Properties:
-        battery(N): whole percent, 0 to 100; a robot's charge is rounded down, so that 100 means full.
+        battery(N): a robot's charge is rounded down, so that 100 means full. N: whole number in percent.
         diagnostics(Text): "Full Battery", "Medium Battery" (50 % and less) or "Low Battery" (20 % and less), or
             as the options say. Before a robot's first message neither property exists.
     """

@@ -1,12 +1,13 @@
 """Mapping files of a run: their artifacts, as if the project declared them, and their errors."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span
 from jacaros.robots.mapping.checking import UNCERTAIN, type_problems
 from jacaros.robots.mapping.file import (
+    MappingFile,
     find_mapping,
     misspelt_expectations,
     read_with_problems,
@@ -24,6 +25,9 @@ WRONG = "wrong-mapping"
 WRONG_WORLD = "wrong-world"
 UNKNOWN_TYPE = "unknown-message-type"
 UNKNOWN_PROPERTY = "unknown-property"
+WRONG_UNIT = "wrong-unit"
+_FINER = {"0 to 1": "percent", "radians": "degrees"}
+"""For units with few whole numbers, one with more."""
 
 
 def read_mapping_file(
@@ -87,7 +91,28 @@ def check_mapping_file(path: Path, beside: Sequence[Path] = ()) -> list[Diagnost
     ]
     warnings = diagnostics_of(mapping.file, mapping.text, misspelt, UNKNOWN_PROPERTY)
     errors = diagnostics_of(mapping.file, mapping.text, problems)
+    if not problems:
+        warnings += diagnostics_of(mapping.file, mapping.text, _coarse_fields(mapping), WRONG_UNIT)
     return errors + [replace(each, severity="warning") for each in warnings]
+
+
+def _coarse_fields(mapping: MappingFile) -> Iterator[Problem]:
+    """Yield fields that are rounded to whole numbers in a unit in which that leaves nearly nothing of the value."""
+    from jacaros.robots.mapping.artifact import mapped_type  # here: few runs check
+    from jacaros.runtime.mas.checks.observables import observables_of
+
+    for name, part in mapping.artifacts.items():
+        values = observables_of([mapped_type(mapping, name)]) or {}
+        for topic in part.topics:
+            fields = [field for field in topic.fields or () for _ in range(field.count)]
+            for field, value in zip(fields, values[topic.name][0].values, strict=False):
+                if value.whole and value.unit in _FINER:
+                    text = f"`{topic.name}` is rounded to whole numbers, but goes from 0 to 1"
+                    if value.unit == "radians":
+                        text = f"`{topic.name}` is rounded to whole radians"
+                    yield field.place.problem(
+                        text, f"add `unit: {_FINER[value.unit]}`, or round to 2 decimals"
+                    )
 
 
 def is_wrong(name: str, folders: Sequence[Path]) -> bool:

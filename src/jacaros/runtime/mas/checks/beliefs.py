@@ -13,7 +13,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from jacaros.agents.checks.beliefs import is_fact_of, is_misspelt, mismatches, mixed_units
+from jacaros.agents.checks.beliefs import (
+    is_fact_of,
+    is_misspelt,
+    mismatches,
+    mixed_facts,
+    mixed_units,
+    told_texts,
+    unmet_goals,
+)
 from jacaros.agents.checks.flow import Adder, Flow, Key, ProgramFlow, Reader, flow_of, is_own, source_of
 from jacaros.agents.language import nodes
 from jacaros.agents.language.cursor import is_slip_of
@@ -35,6 +43,7 @@ _TEXTS: Final = (".asl", ".py", ".mas2j", ".jcm", ".yaml", ".yml")
 _WORD: Final = re.compile(r"\w+")
 _TELLS: Final = re.compile(r"\b(?:tell|tellHow|signal)\b")
 """What a program of another project needs in order to give agents beliefs."""
+MAPPINGS: Final = (".yaml", ".yml")
 _MOST_FILES, _DEEPEST = 500, 4
 """A folder with more files is not a project, so nothing is certain there. Files in deeper folders are ignored."""
 _OF_THE_SYSTEM: Final = frozenset(
@@ -66,51 +75,57 @@ class Surroundings:
         files: files whose content is known, which are not searched.
         others: returns other projects that run the same programs; None: not known. Called on demand.
         is_lone: there is only one program, which may be run with mapping files that are not given.
+        is_partial: other agents of the project are written in Python, and may add any beliefs.
     """
 
     folders: tuple[Path, ...] = ()
     files: Set[Path] = frozenset()
     others: Callable[[], Sequence[Whole] | None] = lambda: ()
     is_lone: bool = False
+    is_partial: bool = False
 
 
 def check_beliefs(whole: Whole, around: Surroundings) -> list[Diagnostic]:
     """Return warnings about beliefs that programs use and nothing adds, and about their values."""
-    if not list(_BeliefCheck([whole], around.is_lone).findings(frozenset())):
+    if not list(_BeliefCheck([whole], around).findings(frozenset())):
         return []
     # Only if there is something to report, other projects and other files are read.
     others = around.others()
     if others is None:
         return []
     types = [each for one in (whole, *others) for each in one.types or ()]
-    elsewhere = words_elsewhere(around.folders, around.files | set(_sources(types)))
-    check = _BeliefCheck([whole, *others], around.is_lone and not others)
+    elsewhere = words_elsewhere(around.folders, around.files | set(_sources(types)), around.is_lone)
+    check = _BeliefCheck([whole, *others], around)
     return [] if elsewhere is None else list(check.findings(elsewhere))
 
 
 class _BeliefCheck:
     """The findings about the first one of some projects that run the same programs."""
 
-    def __init__(self, wholes: Sequence[Whole], is_lone: bool) -> None:
+    def __init__(self, wholes: Sequence[Whole], around: Surroundings) -> None:
         from jacaros.runtime.mas.checks.artifacts import lacks_actions
         from jacaros.runtime.mas.checks.observables import observables_of, parameter_units
 
-        self._is_lone = is_lone
+        self._is_lone = around.is_lone and len(wholes) == 1
+        self._is_partial = around.is_partial
         programs = [program for each in wholes for program in each.programs]
         is_known = all(each.types is not None for each in wholes)
         types = list(dict.fromkeys(kind for each in wholes for kind in each.types or ()))
         observables = observables_of(types) if is_known else None
+        self._observables = observables or {}
         flows = [flow_of(program, STANDARD, observables) for program in programs]
         self._flow = Flow(flows, observables)
         self._flows = flows[: len(wholes[0].programs)]
         self._knows_artifacts = observables is not None
+        self._programs = programs
         self._is_closed = (
             self._knows_artifacts
+            and not around.is_partial
             and not any(each.tells_unseen for each in flows)
             and not lacks_actions(programs, types)
         )
         self._units = parameter_units(types) if self._is_closed else {}
-        self._misspelt = _misspelt_adders(flows, observables or {})
+        self._misspelt = _misspelt_adders(flows, self._observables)
         self._mentioned = {key for each in flows for key in each.mentioned}
         self._reported: set[Key] = set()
 
@@ -121,15 +136,17 @@ class _BeliefCheck:
         said = [each.spelled if self._is_closed else each.said for each in self._flow.programs]
         doubtful = elsewhere.union(_OF_THE_SYSTEM, *said)
         yield from self._never_read(doubtful)
-        for flow in self._flows:
+        for program, flow in zip(self._programs, self._flows, strict=False):
             adders = self._flow.adders(flow)
-            for reader in flow.readers:
+            yield from (*mixed_facts(flow), *told_texts(flow))
+            for reader in () if self._is_partial else flow.readers:
                 if is_own(reader.literal) and reader.key[0] not in doubtful:
                     yield from self._of_reader(reader, adders)
             if self._is_closed:
-                doubtful_names = doubtful.union(name for name, _ in self._mentioned)
-                certain = {name: each for name, each in adders.items() if name not in doubtful_names}
+                uncertain = doubtful.union(name for name, _ in self._mentioned)
+                certain = {name: each for name, each in adders.items() if name not in uncertain}
                 yield from mismatches(flow, certain)
+                yield from unmet_goals(program, certain)
                 yield from mixed_units(flow, certain, self._units)
 
     def _of_reader(self, reader: Reader, adders: Mapping[str, Sequence[Adder]]) -> Iterator[Diagnostic]:
@@ -159,6 +176,8 @@ class _BeliefCheck:
 
     def _never_added(self, reader: Reader, adders: Mapping[str, Sequence[Adder]]) -> Iterator[Diagnostic]:
         (name, size), literal = reader.key, reader.literal
+        if any(name.endswith(f"_{each}") for each in self._observables):
+            return  # some properties begin with the name of the robot
         similar = [each for each in adders if is_misspelt(name, each)] or _forms(reader, adders)
         message = f"belief `{name}/{size}` is never added"
         if any(meant == name for meant, _ in self._misspelt.values()):
@@ -181,6 +200,27 @@ class _BeliefCheck:
                 if each.literal is not None and is_own(each.literal):
                     message = f"belief `{name}/{each.size}` is added, but nothing reads it"
                     yield problem(MISSPELT, message, each.literal.span, did_you_mean([meant]))
+        sizes: dict[str, set[int]] = {}
+        for name, size in (reader.key for flow in self._flow.programs for reader in flow.readers):
+            sizes.setdefault(name, set()).add(size)
+        unsure = doubtful.union(name for name, _ in self._mentioned)
+        for flow in self._flows:
+            for name, adders in flow.adders.items() if self._knows_artifacts else ():
+                if name not in unsure and name in sizes:
+                    yield from _of_other_size(name, adders, sizes[name])
+
+
+def _of_other_size(name: str, adders: Sequence[Adder], read: Set[int]) -> Iterator[Diagnostic]:
+    """Return warnings about beliefs that are read only with another number of arguments, which they also have."""
+    used = read & {each.size for each in adders}
+    for each in adders if used else ():
+        if each.size not in read and each.literal is not None and is_own(each.literal):
+            texts = ", ".join(f"`{name}/{size}`" for size in sorted(read))
+            message = f"belief `{name}/{each.size}` is added, but only {texts} is read"
+            usage = next(other.literal for other in adders if other.size in used)
+            yield problem(
+                UNKNOWN, message, each.literal.span, f"write it as `{format_term(usage)}`" if usage else None
+            )
 
 
 def _misspelt_adders(
@@ -284,18 +324,21 @@ def _shipped_with(name: str) -> str:
 # Other files.
 
 
-def words_elsewhere(folders: Iterable[Path], known: Set[Path]) -> frozenset[str] | None:
+def words_elsewhere(folders: Iterable[Path], known: Set[Path], with_mappings: bool) -> frozenset[str] | None:
     """Return the words in files that may give agents beliefs; None if there are too many files.
 
     Args:
         folders: where they are searched.
         known: files whose content is known.
+        with_mappings: whether other mapping files may belong to the project.
     """
+    from jacaros.robots.mapping.file import is_mapping
+
     found: set[str] = set()
     for number, path in enumerate(_texts(folders)):
         if number >= _MOST_FILES:
             return None
-        if path.resolve() in known:
+        if path.resolve() in known or (path.suffix in MAPPINGS and not with_mappings and is_mapping(path)):
             continue
         try:
             text = file_bytes(path).decode(errors="replace")

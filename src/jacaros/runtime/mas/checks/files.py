@@ -152,8 +152,10 @@ def _check_project(path: Path, findings: Findings) -> Set[Path]:
     if deployment.artifact_environment:
         findings.diagnostics += checked.of_artifacts(is_known)
     if is_known:
-        checked.check_beliefs()
         checked.check_goals()
+    in_python = sum(agent.is_python for agent in different.values())
+    if len(checked.programs) + in_python == len(different):
+        checked.check_beliefs(is_partial=in_python > 0)
     return reading.used
 
 
@@ -343,11 +345,12 @@ class _Checked:
             lambda span: Path(span.file.name).resolve().is_relative_to(base),
         )
 
-    def check_beliefs(self, is_lone: bool = False) -> None:
+    def check_beliefs(self, is_lone: bool = False, is_partial: bool = False) -> None:
         """Report beliefs that nothing adds, unless classes of the project may add more.
 
         Args:
             is_lone: there is only one program, which may be run with mapping files that are not given.
+            is_partial: other agents are written in Python.
         """
         from jacaros.runtime.mas.checks.beliefs import Surroundings, check_beliefs  # here: see `of_artifacts`
 
@@ -356,7 +359,7 @@ class _Checked:
         # The working folder may be any, with any words in its files.
         base = self.deployment.base_path.absolute()
         own = tuple(each for each in self._folders if each.absolute().is_relative_to(base))
-        around = Surroundings(own, self._findings.files, self._others, is_lone)
+        around = Surroundings(own, self._findings.files, self._others, is_lone, is_partial)
         self._findings.diagnostics += check_beliefs(self._whole(), around)
 
     def _whole(self) -> "Whole":

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Final
 
 from jacaros.agents.checks.flow import UNKNOWN, Adder, Value
-from jacaros.artifacts.env.manual import described, own_classes, written_usages
+from jacaros.artifacts.env.manual import described_usages, own_classes, written_usages
 
 if TYPE_CHECKING:
     from jacaros.artifacts.env.artifact import Artifact
@@ -35,8 +35,8 @@ def observables_of(types: "Iterable[type[Artifact]]") -> dict[str, list[Adder]] 
         if any(map(_computes_names, own_classes(artifact_type))):
             return None
         for how, section in (("property", "Properties"), ("signal", "Signals")):
-            for name, (usage, text) in described(artifact_type, section).items():
-                found.setdefault(name, []).append(_adder(how, usage, text))
+            for usage, text in described_usages(artifact_type, section):
+                found.setdefault(usage.partition("(")[0], []).append(_adder(how, usage, text))
         for name, usage in written_usages(artifact_type):
             found.setdefault(name, []).append(_adder("property", usage, ""))
     return found
