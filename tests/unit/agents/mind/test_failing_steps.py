@@ -109,7 +109,8 @@ def test_a_lost_intention_and_a_context_that_cannot_be_evaluated_are_reported():
             (
                 "the goal !g failed and has no plan for its failure: "
                 "test_goal_failed, a test found no answer (lost.asl:3)\n"
-                "  step: ?nothing(1)"
+                "  step: ?nothing(1)\n"
+                "  no belief `nothing`"
             ),
         )
     ]

@@ -26,7 +26,9 @@ def lost(goal: str, why: str, line: int, *details: str) -> list[str]:
 
 def test_a_step_is_reported_with_its_values():
     found = told("!g.\n+!g <- X = 7;\n ?reading(X, Y).")
-    assert found == lost("g", "test_goal_failed, a test found no answer", 3, "step: ?reading(7,Y)")
+    assert found == lost(
+        "g", "test_goal_failed, a test found no answer", 3, "step: ?reading(7,Y)", "no belief `reading`"
+    )
     found = told("level(3).\n!g.\n+!g <- ?level(X);\n X > 5.")
     assert found == lost("g", "constraint_failed, a constraint does not hold", 4, "step: 3 > 5")
     found = told("!g.\n+!g <- X = 1 div 0.")
@@ -70,7 +72,7 @@ def test_goals_without_a_plan_are_reported_with_those_below_and_the_plans_that_d
     )
     assert told("!g.\n+!g : ready.") == [
         "the goal !g failed and has no plan for its failure: no_applicable, no applicable plan for !g",
-        "  does not fit: +!g (tester.asl:2), stops at `ready`",
+        "  does not fit: +!g (tester.asl:2), stops at `ready`: no belief `ready`, and no plan adds it",
     ]
 
 
@@ -88,7 +90,8 @@ def test_fail_goal_and_deadlines_name_the_ended_goal_and_its_step():
 
 def test_failing_handlers_are_reported_with_their_goals():
     found = told("!a.\n+!a <- !b.\n+!b <- .fail.\n-!b <- ?help.")
-    assert found == lost("a", "test_goal_failed, a test found no answer", 4, "step: ?help, for -!b, !a")
+    why = "no belief `help`, and no plan adds it"
+    assert found == lost("a", "test_goal_failed, a test found no answer", 4, "step: ?help, for -!b, !a", why)
     assert told("!a.\n+!a <- !b.\n+!b <- .fail.\n-!b[error(other)].") == [
         (
             "no applicable plan for the failure event -!b; the intention is dropped: "
@@ -143,7 +146,7 @@ ASKS = "!ask.\n+!ask <- .send(self, askOne, door(X), R); .print(R).\n"
 
 
 def test_questions_are_reported_only_when_their_plan_failed():
-    (first, step) = told(ASKS + "+?door(X) <- ?seen(X).")
+    (first, step, _) = told(ASKS + "+?door(X) <- ?seen(X).")
     assert first.startswith("the question ?door(")
     assert first.endswith(
         " from self is answered false, because its plan failed: "
@@ -240,14 +243,17 @@ def test_each_kind_of_conjunct_is_shown():
 
 def test_every_relevant_plan_has_its_own_conjunct_those_whose_trigger_fits_first():
     assert candidates("p. !go.\n+!go : p & q.\n+!go : r.") == [
-        "+!go (tester.asl:2), stops at `q`",
-        "+!go (tester.asl:3), stops at `r`",
+        "+!go (tester.asl:2), stops at `q`: no belief `q`, and no plan adds it",
+        "+!go (tester.asl:3), stops at `r`: no belief `r`, and no plan adds it",
     ]
     assert candidates("!go(2).\n+!go(1).\n+!go(X) : X > 5.") == [
         "+!go(X) (tester.asl:3), stops at `X > 5` with X=2",
         "+!go(1) (tester.asl:2)",
     ]
-    assert stop("!go.\n+!go <- .fail.\n-!go : holiday.") == "stops at `holiday`"
+    assert (
+        stop("!go.\n+!go <- .fail.\n-!go : holiday.")
+        == "stops at `holiday`: no belief `holiday`, and no plan adds it"
+    )
 
 
 def test_internal_actions_without_effects_are_called_again():
@@ -263,7 +269,9 @@ def test_effects_of_a_context_are_not_repeated():
     ] == []
     host = _run('!go.\n+!go : .print("looking") & ready.')
     assert host.printed == ["looking"]
-    assert _candidates(host) == ["+!go (tester.asl:2), stops at `ready`"]
+    assert _candidates(host) == [
+        "+!go (tester.asl:2), stops at `ready`: no belief `ready`, and no plan adds it"
+    ]
     found = stop("lucky :- .random(X) & X < 0. !go.\n+!go : lucky.")
     assert found == "not examined from `lucky` on, which may have effects"
     host = _run("p(a). !go.\n+!go : p(X) & .nth(9, [a], N) & q.")
@@ -301,3 +309,43 @@ def test_nothing_is_searched_for_handled_failures(monkeypatch):
         "!go.\n+!go : ready.\n-!go <- .print(saved).\n!outer.\n+!outer <- !go(1).\n+!go(X) : ready.\n-!outer."
     )
     assert host.printed == ["saved"]
+
+
+def test_a_belief_with_values_of_another_kind_is_shown():
+    because = 'stops at `mode(idle)`: the belief is `mode("idle")`: a string, not an atom'
+    assert stop('mode("idle"). !go.\n+!go : mode(idle).') == because
+    assert stop("at(1, 2). !go.\n+!go : at(X, here).") == (
+        "stops at `at(X, here)`: the belief is `at(1,2)`: a number, not an atom"
+    )
+    assert stop("at(1). at(here). !go.\n+!go : at(there).") == "stops at `at(there)`"
+    assert stop("at([1]). !go.\n+!go : at(_) & at(f(1)).") == (
+        "stops at `at(f(1))`: the belief is `at([1])`: a list, not a structure"
+    )
+
+
+def test_a_flag_that_a_plan_adds_may_come():
+    assert stop("!go.\n+!go : ready.\n+!prepare <- -+ready.") == "stops at `ready`"
+
+
+@pytest.mark.parametrize(
+    ("step", "why"),
+    [
+        ("?place(X, _)", "no belief `place/2`; there is `place/3`"),
+        ("?place(home, _, _)", "the belief is `place(1,2,3)`: a number, not an atom"),
+        ("?place(7, _, _)", None),
+        (
+            "?(place(X, _, _) & X > 5)",
+            "stops at `X > 5` with X=1",
+        ),
+        (".wait(palce(_, _, _), 10)", "no belief `palce`; did you mean `place`?"),
+        (
+            ".wait({+place(_, _, _)}, 10)",
+            "`place(_, _, _)` was added before; wait for the condition: `.wait(place(_, _, _))`",
+        ),
+    ],
+)
+def test_what_nothing_answers_is_told_of_tests_and_waits(step: str, why: str | None) -> None:
+    host = mind(f"place(1, 2, 3). !go.\n+!go <- {step}.")
+    host.run()
+    (_, told_of) = host.logged[-1]
+    assert told_of.splitlines()[2:] == ([] if why is None else [f"  {why}"])

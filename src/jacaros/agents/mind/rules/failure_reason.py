@@ -1,8 +1,9 @@
 """Why a goal failed: the annotations of its failure event, and the description in logs."""
 
-from collections.abc import Callable, Generator, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import cache
 from itertools import islice
 from typing import NamedTuple, cast
 
@@ -11,7 +12,7 @@ from jacaros.agents.language.diagnostics import Span
 from jacaros.agents.language.lowering import Variables, format_term, lower
 from jacaros.agents.language.nodes import names_in, operands
 from jacaros.agents.mind.rules.context import Impure, ReadOnly, reading
-from jacaros.agents.mind.state.belief_base import Table
+from jacaros.agents.mind.rules.unmet import unmet
 from jacaros.agents.mind.state.budget import SearchLimit
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import GOAL, PLAN, STEP, Frame, Intention
@@ -23,7 +24,6 @@ from jacaros.agents.terms.substitution import resolve
 from jacaros.agents.terms.text import excerpt, text
 from jacaros.agents.terms.unifier import Trail, undo, unify
 from jacaros.agents.terms.values import Functor, String, Term, Var, deref, functor, functor_of
-from jacaros.runtime.files.texts import close_matches, did_you_mean
 
 # Steps of plans as text, with the values of their variables.
 
@@ -171,7 +171,7 @@ class Place:
         if self.unplanned is not None:
             term = _shown_call(*self.unplanned)
         elif self.info is not None and self.for_plans:
-            term = self._resolved(lower(_failed_formula(self.info.node), self._value))
+            term = self._resolved(lower(_failed_formula(self.info.node), self.value))
         else:
             return ()
         return (CODE, term), *code_place(self.span(), "" if self.frame is None else self.frame[PLAN].file)
@@ -181,7 +181,7 @@ class Place:
         if self.info is None:
             return ""
         formula = _failed_formula(self.info.node)
-        term = lower(formula, lambda name: UNNAMED if name[0] == "_" else self._value(name))
+        term = lower(formula, lambda name: UNNAMED if name[0] == "_" else self.value(name))
         return step_text(self.info.node, self._resolved(excerpt(term)))
 
     def _resolved(self, term: Term) -> Term:
@@ -193,7 +193,7 @@ class Place:
             # The formula contains the very expression that has no value: show it as written.
             return String(format_term(formula)) if isinstance(formula, nodes.Term) else String("")
 
-    def _value(self, name: str) -> Term:
+    def value(self, name: str) -> Term:
         """Return the value of a variable, as far as it is bound."""
         assert self.frame is not None
         slot = self.frame[PLAN].slots.get(name, len(self.frame))
@@ -302,43 +302,6 @@ def nowhere(*terms: Term, told: str = "") -> FailureReason:
 
 # Describe goals that failed, and plans that were not selected: where, at which step, for which goals, and why.
 
-# Beliefs that a condition asks for and an agent lacks entirely: no fact and no rule has that name.
-
-
-def missing_belief(tables: Mapping[Functor, Table], wanted: Functor) -> str:
-    """Return ``no belief `ready```, with a similar name if there is one.
-
-    Return an empty string if facts or rules of that name exist, or if nothing can be added to a name without arguments.
-
-    Args:
-        tables: facts and rules of the agent by functor.
-        wanted: functor of the literal in the condition.
-    """
-    if _is_held(tables.get(wanted)):
-        return ""
-    same = sorted(symbol.arity for symbol in _held(tables, wanted) if symbol.name == wanted.name)
-    if same:
-        known = ", ".join(f"`{wanted.name}/{arity}`" for arity in same)
-        return f"no belief `{wanted.name}/{wanted.arity}`; there is {known}"
-    near = close_matches(wanted.name, sorted({symbol.name for symbol in _held(tables, wanted)}))
-    if not near and not wanted.arity:
-        return ""
-    sign = "~" if wanted.negated else ""
-    help = did_you_mean(f"{sign}{name}" for name in near)
-    return f"no belief `{sign}{wanted.name}`{'; ' * bool(help)}{help}"
-
-
-def _held(tables: Mapping[Functor, Table], wanted: Functor) -> Iterator[Functor]:
-    """Yield the functors in use that differ from *wanted* only by name or number of arguments."""
-    for symbol, table in tables.items():
-        if _is_held(table) and (symbol.namespace, symbol.negated) == (wanted.namespace, wanted.negated):
-            yield symbol
-
-
-def _is_held(table: Table | None) -> bool:
-    return table is not None and bool(table.rows or table.late)
-
-
 # Where the context of a plan fails: its first failing conjunct, with the values of its variables.
 #
 # Compiled contexts only return whether they hold. When a goal is lost, the contexts of its plans are searched again,
@@ -362,7 +325,7 @@ class _Stop(NamedTuple):
         conjunct: as written.
         values: of its variables, as ``Name=value``, for the first answer of the conjuncts before it.
         answers: number of answers of the conjuncts before it.
-        missing: the belief that the agent lacks entirely; empty unless that is the reason.
+        missing: why no belief answers it; empty if only its values differ.
     """
 
     depth: int
@@ -410,7 +373,7 @@ class FailingContexts:
                 names = Variables()
                 if not self._matches(plan, names.__getitem__, view.trail):
                     return ""
-                return _Search(self._agent, view, context, names).outcome()
+                return _Search(self._agent, view, context, names.__getitem__).outcome()
         except Exception:
             # A message in a log must never make the run fail.
             return ""
@@ -423,7 +386,9 @@ class FailingContexts:
 class _Search:
     """One search of a context, conjunct by conjunct, from the left."""
 
-    def __init__(self, agent: Circumstance, view: ReadOnly, context: nodes.Node, names: Variables) -> None:
+    def __init__(
+        self, agent: Circumstance, view: ReadOnly, context: nodes.Node, names: Callable[[str], Term]
+    ) -> None:
         self._agent, self._view, self._names = agent, view, names
         self._conjuncts = operands(context) if isinstance(context, nodes.And) else [context]
         self._deepest: _Stop | None = None
@@ -438,6 +403,10 @@ class _Search:
         except SearchLimit:
             found = self._deepest
             return "" if found is None else f"stops at {found}; not searched to the end"
+
+    def deepest(self) -> _Stop | None:
+        """Return the conjunct at which the condition stops; None if it holds by now."""
+        return None if self._holds(0) else self._deepest
 
     def _holds(self, depth: int) -> bool:
         """Return whether the conjuncts from *depth* on hold with the present values."""
@@ -457,7 +426,7 @@ class _Search:
         view = self._view
         self._depth, mark = depth, len(view.trail)
         try:
-            formula = lower(self._conjuncts[depth], self._names.__getitem__)
+            formula = lower(self._conjuncts[depth], self._names)
             for _ in view.answers(formula):
                 view.beliefs.budget.spend()
                 yield True
@@ -479,28 +448,29 @@ class _Search:
             self._deepest = deepest._replace(answers=deepest.answers + 1)
 
     def _missing(self, conjunct: nodes.Node) -> str:
-        """Describe which belief of a literal the agent lacks entirely, with a similar name."""
+        """Describe why no belief answers a literal, with a similar name."""
         if not isinstance(conjunct, nodes.Literal) or isinstance(conjunct.namespace, nodes.Variable):
             return ""
-        symbol = functor_of(lower(conjunct, self._names.__getitem__))
-        return "" if symbol is None else missing_belief(self._agent.beliefs, symbol)
+        return unmet(self._agent, lower(conjunct, self._names))
 
     def _text(self, depth: int) -> str:
-        conjunct = self._conjuncts[depth]
-        span = conjunct.span
-        if span is not None and span.line == span.end_line:
-            written = span.file.lines[span.line - 1][span.column - 1 : span.end_column - 1]
-        else:
-            written = unbracketed(format_term(conjunct))
-        return short(written, LONGEST_CONJUNCT)
+        return short(written(self._conjuncts[depth]), LONGEST_CONJUNCT)
 
     def _values(self, conjunct: nodes.Node) -> str:
         shown = []
         for name in names_in(conjunct):
-            value = deref(self._names[name])
+            value = deref(self._names(name))
             if value.__class__ is not Var:
                 shown.append(f"{name}={short(_value_text(value), LONGEST_VALUE)}")
         return ", ".join(shown)
+
+
+def written(node: nodes.Node) -> str:
+    """Return a formula as its program has it."""
+    span = node.span
+    if span is not None and span.line == span.end_line:
+        return span.file.lines[span.line - 1][span.column - 1 : span.end_column - 1]
+    return unbracketed(format_term(node))
 
 
 def _value_text(value: Term) -> str:
@@ -572,8 +542,42 @@ def note_goals(
     stack = [*reason.place.inner_goals, *([] if goal is None else [goal]), *goals_below(intention)]
     reason.goals = _shown(stack)
     unplanned = reason.place.unplanned
-    reason.candidates = () if unplanned is None else _candidates(agent, *unplanned)
+    reason.candidates = (
+        _unanswered(agent, reason.place) if unplanned is None else _candidates(agent, *unplanned)
+    )
     return stack
+
+
+def _unanswered(agent: Circumstance, place: Place) -> tuple[str, ...]:
+    """Return a line that says why no belief answers the test of a step, or why what a `.wait` waits for did not come."""
+    step = None if place.info is None else place.info.node
+    formula = step.formula if isinstance(step, nodes.Test | nodes.Constraint) else None
+    if isinstance(formula, nodes.InternalAction) and formula.name == ".wait" and formula.arguments:
+        formula = formula.arguments[0]
+    event = _awaited_event(formula)
+    condition = formula if event is None else event
+    if not isinstance(condition, nodes.Literal | nodes.And):
+        return ()
+    try:
+        with reading(agent, MOST_STEPS) as view:
+            stop = _Search(agent, view, condition, cache(place.value)).deepest()
+    except Exception:
+        return ()  # a message in a log must never make the run fail
+    if stop is None:
+        told = written(condition)
+        return (
+            () if event is None else (f"`{told}` was added before; wait for the condition: `.wait({told})`",)
+        )
+    if isinstance(condition, nodes.Literal):
+        return (stop.missing,) if stop.missing else ()
+    return (f"stops at {stop}",)
+
+
+def _awaited_event(formula: nodes.Node | None) -> nodes.Node | None:
+    """Return the belief of an awaited event ``{+b}``."""
+    steps = formula.body.steps if isinstance(formula, nodes.BodyTerm) else ()
+    step = steps[0] if len(steps) == 1 else None
+    return step.operand if isinstance(step, nodes.BeliefChange) and step.operator == "+" else None
 
 
 def loss_of(what: str, reason: FailureReason) -> Loss:

@@ -114,7 +114,7 @@ def test_a_deliberation_says_why_plans_were_refused():
     go, sub = of(records_of({"ann": REFUSED}), "deliberation")
     assert (go["trigger"], go["chosen"], go["untried"], go["intention"]) == ("+!go", 3, [4], None)
     assert go["options"] == [
-        {"plan": 1, "why": "stops at `ready`"},
+        {"plan": 1, "why": "stops at `ready`: no belief `ready`, and no plan adds it"},
         {"plan": 2, "why": "stops at `B > L` with B=12, L=20"},
     ]
     assert (sub["trigger"], sub["parent"], sub["intention"]) == ("+!sub(12)", go["id"], 1)
@@ -137,7 +137,7 @@ def test_variables_of_a_goal_are_shown_as_they_were_before_a_plan_bound_them():
     program = "!go. +!go <- !ask(Where, _). +!ask(a, _) : no. +!ask(b, _)."
     _, ask = of(records_of({"ann": program}), "deliberation")
     assert ask["trigger"] == "+!ask(Where,_)"
-    assert ask["options"] == [{"plan": 2, "why": "stops at `no`"}]
+    assert ask["options"] == [{"plan": 2, "why": "stops at `no`: no belief `no`, and no plan adds it"}]
     goals = of(records_of({"ann": "!go. +!go <- !ask(Where, _). +!ask(_, _) <- .wait(10)."}), "goal")
     assert {goal["goal"] for goal in goals} == {"!go", "!ask(Where,_)"}
 
