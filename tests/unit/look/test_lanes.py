@@ -197,7 +197,7 @@ async def test_a_click_goes_there_and_shows_why_and_the_wheel_zooms() -> None:
             "Input.dispatchMouseEvent", type="mouseWheel", x=middle, y=top + 12, deltaX=0, deltaY=-900
         )
         await page.wait_for(f"{ruler}.toDataURL() !== {before!r}")
-        await page.click("#when .tools button:last-child")
+        await page.click("#when [aria-label='All of the run']")
         await page.wait_for(f"{ruler}.toDataURL() === {before!r}")
 
 

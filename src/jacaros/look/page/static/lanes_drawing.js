@@ -1,4 +1,4 @@
-import { themeColor } from "./elements.js";
+import { rounded, themeColor } from "./elements.js";
 import { KIND } from "./lanes_bars.js";
 import { fitted } from "./time_canvas.js";
 
@@ -64,7 +64,7 @@ export class LanesDrawing {
         Object.assign(run, { root, from, text: root.goal ?? root.operation ?? root.holder, words: "" });
       }
       this.drawBar(row, bars.kinds[first], from, to);
-      if (what.words && !run.words && to - from > 60) Object.assign(run, { words: what.words.replace(/^the (action )?/, ""), wordsAt: from });
+      if (what.words && !run.words && to - from > 60) Object.assign(run, { words: rounded(what.words).replace(/^the (action )?/, ""), wordsAt: from });
       run.to = to;
     });
     this.label(row, run);
@@ -121,7 +121,7 @@ export class LanesDrawing {
       pen.fillRect(run.from, y + height - 1.5, run.to - run.from, 1.5);
     }
     if (height < 9 || run.to - from < 4 * LETTER) return;
-    const shown = cut(text, run.to - from - 2);
+    const shown = cut(rounded(text), run.to - from - 2);
     if (shown.length < 3) return;
     pen.fillStyle = this.ink;
     pen.textAlign = "left";

@@ -51,6 +51,12 @@ export class TimeAxis {
     this.notify();
   }
 
+  /** Show the end of a live run, or the whole recording, again. */
+  follow() {
+    this.mode = "auto";
+    this.notify();
+  }
+
   /** Call `listener` after each change of the range by hand; returns the function that ends this. */
   onChange(listener) {
     this.listeners.add(listener);

@@ -15,8 +15,9 @@ export class TimeView {
     this.body = root.querySelector(".times");
     this.body.prepend(this.ruler);
     this.body.append(this.now);
+    this.follow = this.tool("Follow", "Follow the end of the run again", () => this.axis.follow());
     this.tools = element("div", "tools", this.tool("−", "Show a longer time", () => this.axis.zoom(1 / 1.5)),
-      this.tool("+", "Show a shorter time", () => this.axis.zoom(1.5)), this.tool("All", "All of the run", () => this.axis.all()));
+      this.tool("+", "Show a shorter time", () => this.axis.zoom(1.5)), this.tool("All", "All of the run", () => this.axis.all()), this.follow);
     root.prepend(element("header", "", element("h2", "", "Time"), this.tools));
     this.ruler.addEventListener("click", ({ offsetX }) => this.time.go(this.axis.t(offsetX)));
     root.tabIndex = 0;
@@ -38,6 +39,7 @@ export class TimeView {
     axis.width = Math.max(10, clientWidth - axis.left - RIGHT);
     axis.update(t);
     const x = axis.x(t);
+    this.follow.hidden = !this.time.live || axis.mode === "auto";
     this.now.hidden = !axis.has(t);
     this.now.style.transform = `translateX(${x.toFixed(1)}px)`;
     const stamp = `${axis.from} ${axis.to} ${clientWidth} ${isDark()}`;
@@ -54,16 +56,16 @@ export class TimeView {
     for (const t of ticks) {
       const x = Math.round(this.axis.x(t));
       pen.fillRect(x, RULER - 4, 1, 4);
-      pen.fillText(isFine ? `${t.toFixed(2)} s` : tickText(t, ticks), x, RULER - 6);
+      pen.fillText(isFine ? `${t.toFixed(2)} s` : tickText(t, ticks), Math.min(x, width - 18), RULER - 6);
     }
   }
 
-  /** Zoom and pan with the keys, when the panel itself has the focus. */
+  /** Zoom with the keys, and pan when the panel itself has the focus. */
   press(event) {
-    if (event.target !== this.root || event.ctrlKey || event.metaKey || event.altKey) return;
-    const { axis } = this, factor = KEYS[event.key];
+    if (event.target.matches("input, select") || event.ctrlKey || event.metaKey || event.altKey) return;
+    const { axis } = this, factor = KEYS[event.key], side = event.target === this.root ? { ArrowLeft: -0.1, ArrowRight: 0.1 }[event.key] : undefined;
     if (factor) axis.zoom(factor);
-    else if (event.key === "ArrowLeft" || event.key === "ArrowRight") axis.pan((event.key === "ArrowLeft" ? -0.1 : 0.1) * axis.span);
+    else if (side) axis.pan(side * axis.span);
     else if (event.key === "0") axis.all();
     else return;
     event.preventDefault();
