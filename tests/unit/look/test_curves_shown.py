@@ -115,6 +115,21 @@ async def test_curves_are_chosen_where_numbers_are_shown_and_remembered() -> Non
         await page.wait_for("document.querySelectorAll('.chip').length === 4")
 
 
+DRAGGED = """(() => {
+  const dataTransfer = new DataTransfer(), drag = (target, kind) => target.dispatchEvent(new DragEvent(kind, { dataTransfer, bubbles: true }));
+  drag(document.querySelector('.robot'), 'dragstart');
+  drag(document.querySelector('#curves'), 'drop');
+})()"""
+
+
+@needs_chromium
+async def test_a_robot_is_dragged_to_the_curves() -> None:
+    async with replayed(recorded(), at=30.0, more="&curves=robot r1 speed") as page:
+        await page.evaluate(DRAGGED)
+        await page.wait_for("document.querySelectorAll('.chip').length === 4")
+        assert await chips(page) == ["r1 speed 0.1 m/s", "r1 battery 90 %", "r1 x 3 m", "r1 y 1 m"]
+
+
 DRAWN = """(() => {
   const { prototype } = CanvasRenderingContext2D, fill = prototype.fillText;
   window.drawn = [];

@@ -9,7 +9,7 @@ export class CurveDrawing {
     Object.assign(this, { pen, axis, top, bottom, end });
     pen.font = "11px system-ui, sans-serif";
     pen.textBaseline = "middle";
-    pen.lineJoin = "bevel";  // three times as fast as the other joins where a curve is dense
+    pen.lineJoin = "bevel";
   }
 
   get right() { return this.axis.left + this.axis.width; }
@@ -51,25 +51,26 @@ export class CurveDrawing {
   }
 
   curve({ series, source, scale: factor }, scale, color, dashes = []) {
-    const { axis } = this, points = series.points(axis.from, axis.to, axis.grain, source.isStep), { length } = points;
-    const line = [];
+    const { axis } = this, points = series.points(axis.from, axis.to, axis.grain, source.isStep), { length } = points, line = [];
+    // A line that is one pixel wide and on whole pixels is drawn ten times as fast.
+    const isDense = length > axis.width, x = (t) => (isDense ? Math.round(axis.x(t)) + 0.5 : axis.x(t));
     for (let i = 0; i < length; i += 2) {
       // The value of a step holds until the next one.
-      if (source.isStep && i) line.push(axis.x(points[i]), line.at(-1));
-      line.push(axis.x(points[i]), scale.y(points[i + 1] * factor));
+      if (source.isStep && i) line.push(x(points[i]), line.at(-1));
+      line.push(x(points[i]), scale.y(points[i + 1] * factor));
     }
-    if (source.isStep && points[length - 2] >= source.track.times.at(-1)) line.push(axis.x(this.end), line.at(-1));
-    this.line(line, color, dashes);
+    if (source.isStep && points[length - 2] >= source.track.times.at(-1)) line.push(x(this.end), line.at(-1));
+    this.line(line, color, dashes, isDense || dashes.length ? 1 : 1.5);
   }
 
   /** Draw a line through points, x and y in turn, with gaps where y is NaN. */
-  line(points, color, dashes) {
+  line(points, color, dashes = [], width = 1) {
     const { pen } = this;
     pen.beginPath();
     for (let i = 0; i < points.length; i += 2) {
       if (Number.isNaN(points[i - 1] ?? NaN)) pen.moveTo(points[i], points[i + 1]); else pen.lineTo(points[i], points[i + 1]);
     }
-    pen.lineWidth = dashes.length ? 1 : 1.5;
+    pen.lineWidth = width;
     pen.setLineDash(dashes);
     pen.strokeStyle = color;
     pen.stroke();
