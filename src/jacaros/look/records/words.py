@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from jacaros.agents.mind.state.triggers import Goal, literal_of
@@ -111,26 +111,49 @@ def _value_text(value: object, quoted: bool = False) -> str:
         return type(value).__name__
 
 
-def message_text(message: Any) -> str:
-    """Return the numbers, strings and Booleans of a message that are not 0 or empty, by field."""
-    found: list[str] = []
-    _add_fields(message, "", 4, found)
+def message_text(message: Any, effect: Iterable[object] = ()) -> str:
+    """Return the numbers, strings and Booleans of a message that are not 0 or empty, by field.
+
+    Args:
+        message: the message.
+        effect: values that came of it. Fields that they may have come from are first, and those that are NaN last.
+    """
+    values = [each for each in effect if each not in (0, "", None)]
+    fields = sorted(_fields(message, "", 4), key=lambda each: _importance(each[1], values))
+    found = [text for text, _ in fields]
     if len(found) > _FIELDS:
         found[_FIELDS:] = ["..."]
     return limited(", ".join(found))
 
 
-def _add_fields(message: Any, path: str, depth: int, found: list[str]) -> None:
+def _fields(message: Any, path: str, depth: int) -> Iterator[tuple[str, object]]:
+    """Return the fields of a message as text, each with its value."""
     for name in field_names(message) or ():
         value = getattr(message, name)
         if isinstance(value, float):
             if value:
-                found.append(f"{path}{name}={value:.4g}")
+                yield f"{path}{name}={value:.4g}", value
         elif isinstance(value, int | str):
             if value:
-                found.append(f"{path}{name}={limited(str(value))}")
+                yield f"{path}{name}={limited(str(value))}", value
         elif hasattr(value, "__len__"):
             if len(value) and name != "covariance":
-                found.append(f"{path}{name}=[{len(value)} values]")
-        elif name != "header" and depth and len(found) <= _FIELDS:
-            _add_fields(value, f"{path}{name}.", depth - 1, found)
+                yield f"{path}{name}=[{len(value)} values]", None
+        elif name != "header" and depth:
+            yield from _fields(value, f"{path}{name}.", depth - 1)
+
+
+def _importance(value: object, effect: list[object]) -> int:
+    """Return 0 for a value that the effect may have come from, as it is or in other units, 2 for NaN, otherwise 1."""
+    if isinstance(value, float) and math.isnan(value):
+        return 2
+    return 0 if any(_may_be(value, each) for each in effect) else 1
+
+
+def _may_be(value: object, effect: object) -> bool:
+    if isinstance(value, str | bool) or not isinstance(effect, int | float):
+        return value == effect
+    if not isinstance(value, int | float) or not math.isfinite(value):
+        return False
+    rounding = 1.0 if isinstance(effect, int) else max(0.006, 0.001 * abs(effect))
+    return any(abs(value * scale - effect) < rounding for scale in (1.0, 100.0, 180 / math.pi))

@@ -1,6 +1,6 @@
 """Records of causes. Only causes that led to something are recorded."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from jacaros.look.records import records
@@ -17,6 +17,7 @@ the robot, are recorded, too.
 """
 RECORDED = ("event", "message")
 """Links with records of their own: deliberations and messages. Their causes are recorded with these."""
+_CHANGES = ("property", "signal")
 _WITH_ORIGIN = ("act", "operation", "remote")
 LARGE = 4096
 """Number of elements in the field ``data`` from which on a message, such as an image, is not kept."""
@@ -116,7 +117,7 @@ class CauseRecords:
         if kind in RECORDED:
             return made
         if isinstance(parent, _Received):
-            self._keep_sample(parent)
+            self._keep_sample(parent, about if kind in _CHANGES else None)
         self._young[number] = made, self._clock.now(), about
         if len(self._young) > _GENERATION:
             self._old, self._young = self._young, {}
@@ -160,15 +161,15 @@ class CauseRecords:
         kept = message if traffic.kept else None
         return tuple.__new__(_Received, (number, 0, "sample", topic, kept))
 
-    def _keep_sample(self, cause: Cause) -> None:
-        """Keep a message that has led to something, until something needs it."""
+    def _keep_sample(self, cause: Cause, effect: Any = None) -> None:
+        """Keep a message that has led to something, until something needs it, with the change that it led to first."""
         if cause.id not in self._samples:
             if len(self._samples) > _GENERATION:
                 self._samples.clear()
             self._samples.add(cause.id)
             link: tuple[Any, ...] = tuple(cause)
             # The effects of a message occur in the same pass of the event loop.
-            self._young[cause.id] = Cause(*link[:4]), self._clock.now(), link[4]
+            self._young[cause.id] = Cause(*link[:4]), self._clock.now(), link[4] and (link[4], effect)
 
     def sent_message(self, topic: str, message: Any, parent: Cause | None) -> None:
         """Create the last link of a chain, see `jacaros.runtime.trace.Tracer`.
@@ -243,8 +244,21 @@ def _is_small(message: Any) -> bool:
     return not hasattr(data, "__len__") or len(data) < LARGE
 
 
-def _message_details(topic: str, message: Any) -> dict[str, Any]:
-    shown = message_text(message)
+def _sample_details(topic: str, about: Any) -> dict[str, Any]:
+    message, effect = about
+    return _message_details(topic, message, () if effect is None else _values_of(*effect))
+
+
+def _values_of(_: Any, signals: Any, changes: Any) -> Iterator[Any]:
+    """Return the values of a change, for telling which field of a message mattered."""
+    for signal in signals:
+        yield from signal.arguments
+    for now in (*(each for _, each in changes.changed), *changes.added):
+        yield from now.values
+
+
+def _message_details(topic: str, message: Any, effect: Iterable[object] = ()) -> dict[str, Any]:
+    shown = message_text(message, effect)
     return {"topic": topic, "what": limited(f"{topic}: {shown}" if shown else topic)}
 
 
@@ -271,7 +285,7 @@ def _origin_details(_: str, origin: Origin) -> dict[str, Any]:
 
 
 _DETAILS: Mapping[str, Callable[[str, Any], dict[str, Any]]] = {
-    "sample": _message_details,
+    "sample": _sample_details,
     "command": _message_details,
     "property": _change_details,
     "signal": _change_details,

@@ -116,7 +116,7 @@ def test_an_event_stops_the_run_before_a_plan_is_selected(pattern: str, times: i
 
 def test_a_condition_stops_the_run_when_it_becomes_true_and_not_while_it_stays_true() -> None:
     found = stops({"condition": "count(N) & N > 1", "agent": "bob"})
-    assert found == [("breakpoint count(N) & N > 1 of bob", 5, ["at0", "counted", "at1"])]
+    assert found == [("breakpoint count(N) & N > 1 of bob with N=2", 5, ["at0", "counted", "at1"])]
 
 
 @pytest.mark.program("ready.")

@@ -1,10 +1,13 @@
 """Chains of causes: what is kept until something needs it, and which commands are recorded."""
 
+import math
+from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+from jacaros.look.records.words import message_text
 from jacaros.look.why.why import explain
 from jacaros.runtime.clock import VirtualClock
 from jacaros.runtime.mas.history import causes
@@ -69,3 +72,34 @@ def test_the_outcome_of_a_goal_is_that_of_its_own_agent() -> None:
     answer = explain(records, "!go", agent="ann").text()
     assert "!go failed at 3.000 s: no_way" in answer
     assert "achieved" not in answer
+
+
+@dataclass
+class Battery:
+    voltage: float = 15.9
+    current: float = math.nan
+    percentage: float = 0.7965
+    present: bool = True
+
+
+@dataclass
+class Robot:
+    name: str = "r1"
+    mode: str = "idle"
+    battery: Battery = field(default_factory=Battery)
+
+
+@pytest.mark.parametrize(
+    ("message", "effect", "text"),
+    [
+        (Battery(), [], "voltage=15.9, percentage=0.7965, present=True, current=nan"),
+        (Battery(), [79], "percentage=0.7965, voltage=15.9, present=True, current=nan"),
+        (Battery(), [15.9, 0.7965], "voltage=15.9, percentage=0.7965, present=True, current=nan"),
+        (Robot(), ["idle"], "mode=idle, name=r1, battery.voltage=15.9, battery.percentage=0.7965"),
+        (Robot(), [0, "", 80], "battery.percentage=0.7965, name=r1, mode=idle, battery.voltage=15.9"),
+    ],
+)
+def test_a_message_shows_the_fields_first_that_its_effect_came_from(
+    message: Any, effect: list[object], text: str
+) -> None:
+    assert message_text(message, effect).startswith(text)
