@@ -90,7 +90,9 @@ async def test_the_past_stays_available_after_the_run() -> None:
             mas.add_agent("bob", "!live. +!live <- .print(hello).")
             await page.open(address)
             await page.wait_for("document.querySelector('#log').innerText.includes('hello')")
-        await page.wait_for("document.querySelector('#notice').checkVisibility()")
+        await page.wait_for(
+            "document.querySelector('#headline').innerText.includes('connection to the run lost')"
+        )
         assert "hello" in await page.text("#log")
 
 

@@ -71,7 +71,7 @@ def test_models_of_a_long_run_stay_small(tmp_path: Path) -> None:
         })()""",
     )
     assert all(count <= 100_001 for count in counts[:3])
-    assert counts[3] == 60, "the longest chain that is shown"
+    assert counts[3] == 2000, "the longest chain that is followed"
     assert counts[4] == 0
 
 

@@ -140,6 +140,7 @@ class Teller:
         self._tales: dict[tuple[str, str], Tale] = {}
         self._pursuits: dict[Key, _Pursuit] = {}
         self._failures: dict[Key, _Failure] = {}
+        self._suspended: dict[Key, Tale] = {}
         self._open: dict[str, set[Any]] = {}
         self._idle: dict[str, float] = {}
         """Since when agents have no intention; those that have one are in *_open*."""
@@ -176,6 +177,9 @@ class Teller:
         for pursuit in self._pursuits.values():
             pursuit.tale.last = past.end
             pursuit.tale.states.add("open")
+        for key, tale in self._suspended.items():
+            if key in self._pursuits or past.end - tale.last <= AT_ONCE:  # until the end of the run
+                tale.rank, tale.level, tale.last = Rank.TROUBLE, "warning", past.end
         pursuits = [each for each in self._tales.values() if each.goals]
         pursuits.sort(key=lambda each: each.weight)
         for each in pursuits[:MOST_PURSUITS]:
@@ -221,7 +225,12 @@ class Teller:
             self._begin(t, key, number, goal)
         elif state == "failed":
             self._failures.setdefault(key, _Failure(t, data.get("why") or "")).goals[number] = goal
-        elif state not in ("suspended", "resumed"):
+        elif state == "suspended":
+            self._suspend(t, key, number)
+        elif state == "resumed":
+            if key in self._suspended:
+                self._suspended.pop(key).last = t
+        else:
             self._close(t, key, number, state)
 
     def _begin(self, t: float, key: Key, number: Any, goal: str) -> None:
@@ -244,11 +253,20 @@ class Teller:
         else:
             del pursuit.stack[number]
 
+    def _suspend(self, t: float, key: Key, number: Any) -> None:
+        pursuit = self._pursuits.get(key)
+        if pursuit is not None and number == next(iter(pursuit.stack)):
+            told = f"`{_cut(shown(pursuit.stack[number]))}` was suspended"
+            self._suspended[key] = self._tell("suspended", Rank.ROUTINE, t, told, who=key[0])
+            self._suspended[key].lasts = True
+
     def _end_intention(self, t: float, key: Key, state: str = "") -> None:
         pursuit = self._pursuits.pop(key, None)
         if pursuit is not None:
             pursuit.tale.last = t
             pursuit.tale.states.update({state} - {"replaced"})
+        if key in self._suspended:
+            self._suspended[key].last = t
         intentions = self._open.get(key[0], set())
         intentions.discard(key[1])
         if not intentions:
@@ -341,15 +359,15 @@ class Teller:
         parts = [f"the run ended with exit code {code}{because}"]
         if code is None:
             parts = ["the recording stops before the end of the run"]
-        quiet = [each for each, t in self._idle.items() if past.end - t >= LONG and not self._open.get(each)]
-        lost = {
-            name for key, tale in self._tales.items() if key[0] == "lost" for name in tale.who
-        }.intersection(quiet)
-        if idle := [each for each in quiet if each in lost] or quiet:
-            since = min(past.end - self._idle[each] for each in idle)
-            parts.append(f"{_names(idle)} had no goal for the last {_duration(since)}")
+        lost = {name for key, tale in self._tales.items() if key[0] == "lost" for name in tale.who}
+        silent = {each: past.end - t for each, t in self._idle.items() if not self._open.get(each)}
+        quiet = [each for each, passed in silent.items() if passed >= (AT_ONCE if each in lost else LONG)]
+        lost.intersection_update(quiet)
         ended = {(agent, goal) for t, agent, goal in self._dropped if past.end - t <= AT_ONCE}
         ended |= {(key[0], next(iter(each.stack.values()))) for key, each in self._pursuits.items()}
+        if idle := [each for each in quiet if each in lost] or (quiet if not ended else []):
+            since = min(silent[each] for each in idle)
+            parts.append(f"{_names(idle)} had no goal for the last {_duration(since)}")
         if ended:
             agents = len({agent for agent, _ in ended})
             by = f" by {agents} agents" if agents > 1 else ""

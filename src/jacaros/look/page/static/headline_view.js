@@ -44,14 +44,19 @@ export class HeadlineView {
     return element("p", level, keyed(`headline ${n}`, made));
   }
 
+  /** The operation that failed at time `t`, or else what the intention did last. */
+  cause(agent, intention, t) {
+    const own = (fits) => this.causes.last(t, 1, (link) => link.agent === agent && fits(link))[0];
+    return own(({ outcome, ended }) => outcome === "failed" && Math.abs(ended - t) < 1) ?? own((link) => link.intention === intention);
+  }
+
   /** Go to the moment, and show what led to a failure. */
   go({ level, t, agent, intention, robot }) {
     const { time, selection, open } = this.context;
     if (t !== undefined) time.go(t);
     if (robot) selection.choose({ robot });
     if (!agent) return;
-    const fits = (link) => link.agent === agent && (intention === undefined || link.intention === intention || link.outcome === "failed");
-    const [link] = level === "error" || level === "warning" ? this.causes.last(t ?? time.now, 1, fits) : [];
+    const link = level === "error" || level === "warning" ? this.cause(agent, intention, t ?? time.now) : undefined;
     if (link) showWhy(this.context, { agent, intention, cause: link.id });
     else {
       selection.choose({ agent, intention });

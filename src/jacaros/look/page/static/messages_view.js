@@ -65,11 +65,11 @@ export class MessagesView {
   }
 }
 
-/** The agents that talk now: those of the newest messages, in the order of their names. */
+/** The agents that talk now: those of the newest messages, in the order in which they first appear. */
 function talking(messages) {
   const kept = new Set();
   for (const { from, to } of messages.toReversed()) {
     if (new Set([...kept, from, to]).size <= MOST) kept.add(from).add(to);
   }
-  return [...kept].sort((a, b) => a.localeCompare(b, undefined, { numeric: true }));
+  return [...new Set(messages.flatMap(({ from, to }) => [from, to]))].filter((agent) => kept.has(agent));
 }
