@@ -26,6 +26,9 @@ LONG = 5.0
 LONGEST = 160
 """Maximum number of characters of a reason."""
 
+_SIGNALS = 128
+"""Exit codes from here on mean that a signal ended the run, such as that of Ctrl+C (130)."""
+
 Level = Literal["error", "warning", "note"]
 Key = tuple[str, Any]
 """An agent and its intention."""
@@ -359,6 +362,8 @@ class Teller:
         parts = [f"the run ended with exit code {code}{because}"]
         if code is None:
             parts = ["the recording stops before the end of the run"]
+        elif code >= _SIGNALS:
+            parts = [f"the run was stopped by signal {code - _SIGNALS}"]
         lost = {name for key, tale in self._tales.items() if key[0] == "lost" for name in tale.who}
         silent = {each: past.end - t for each, t in self._idle.items() if not self._open.get(each)}
         quiet = [each for each, passed in silent.items() if passed >= (AT_ONCE if each in lost else LONG)]
@@ -372,7 +377,9 @@ class Teller:
             agents = len({agent for agent, _ in ended})
             by = f" by {agents} agents" if agents > 1 else ""
             parts.append(f"still wanted{by}: {_names(sorted({f'`{shown(goal)}`' for _, goal in ended}))}")
-        level: Level = "warning" if code is None else "error" if code or lost else "note"
+        level: Level = (
+            "warning" if code is None else "error" if 0 < (code or 0) < _SIGNALS or lost else "note"
+        )
         return Tale(Rank.END, past.end, "; ".join(parts), level)
 
 

@@ -43,7 +43,8 @@ export function sortOf(event, data) {
 }
 
 /** How loud a line of the log is: a lost goal as loud as a failure of a robot. */
-export function toneOf(event, { level, text }) {
+export function toneOf(event, { level, text, code }) {
+  if (event === "ended" && code) return "failure";
   if (event !== "log" || level === "info") return undefined;
   return level === "error" || text.includes("has no plan for its failure") ? "failure" : "warning";
 }

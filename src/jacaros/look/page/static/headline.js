@@ -6,6 +6,7 @@ const LEVELS = ["error", "warning", "busy", "quiet"];
 const LATELY = 60;  // seconds for which a lost goal of an agent that has others is worth a line
 const LATE = 0.5;  // seconds after which an intention that lasts is recorded
 const FAR = 0.2;  // metres between a pose and the believed one
+const SIGNALS = 128;  // exit codes from here on mean that a signal ended the run
 const AT_END = 0.3;  // seconds before the end of a run in which it takes the goals from its agents
 const DEEDS = [[/^(?:drive|navigate|go|move)_?to/i, "driving to"], [/undock/i, "leaving the dock"], [/dock/i, "docking"], [/charg/i, "charging"], [/^(?:rotate|turn)/i, "turning"]];
 
@@ -35,7 +36,7 @@ export class Headline {
     }
     if (!this.run.over || t < this.run.end - AT_END) return [];
     const { code } = this.run, told = this.story.lines.at(-1)?.text ?? `the run ended with exit code ${code}`;
-    return [{ level: code ? "error" : "quiet", text: told, t: this.run.end }];
+    return [{ level: code && code < SIGNALS ? "error" : "quiet", text: told, t: this.run.end }];
   }
 
   ofFleet(t) {
@@ -94,12 +95,12 @@ function levelOf({ state, waits = "", stack = [] }) {
 }
 
 /** What an intention does, in words. */
-function doing(mind, { state, waits = "", reason, stack = [] }, t) {
-  const goal = stack.length ? ` (\`${stack[0].goal}\`)` : "", failed = stack.findLast((each) => each.goal.startsWith("-!"));
-  if (state === "suspended") return `suspended${reason && reason !== "suspend_ia" ? `: ${reason}` : ""}${goal}`;
+function doing(mind, { state, waits = "", reason, since, stack = [] }, t) {
+  const long = t - since >= 1 ? ` since ${clock(since)}` : "", goal = stack.length ? ` (\`${stack[0].goal}\`)` : "", failed = stack.findLast((each) => each.goal.startsWith("-!"));
+  if (state === "suspended") return `suspended${long}${reason && reason !== "suspend_ia" ? `: ${reason}` : ""}${goal}`;
   const act = /^(?:for )?the (?:action|operation) (.*)$/.exec(waits)?.[1], handling = failed ? ` handles the failure of \`${failed.goal.slice(1)}\`:` : "";
   if (act) return `${handling}${deed(mind, act, t)}${goal}`.trim();
-  if (waits) return `${handling} waits for ${waits}${goal}`.trim();
+  if (waits) return `${handling} waits for ${waits}${/^the/.test(waits) ? long : ""}${goal}`.trim();
   const step = stack.at(-1)?.step;
   return `${handling} ${step ? `at \`${step}\`` : "runs"}${goal}`.trim();
 }
