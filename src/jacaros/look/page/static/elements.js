@@ -6,9 +6,11 @@ export function element(tag, className = "", ...children) {
   return made;
 }
 
+const SHORT = 16;  // characters of a text that stays on one line
+
 /** A text with a place to wrap after each `/`, `_`, `,` or `(`, so that no word is cut; other things as they are. */
 export function breakable(text) {
-  if (typeof text !== "string") return [text];
+  if (typeof text !== "string" || text.length < SHORT) return [text];
   return text.split(/(?<=[/_,(](?=\w|"))/).flatMap((part, n) => (n ? [document.createElement("wbr"), part] : [part]));
 }
 

@@ -100,7 +100,7 @@ export function startPage({ live, commands }) {
 
   const dividers = [
     new Divider(at("left"), at("right"), "Width of the details"), new Divider(at("stage"), at("when"), "Height of the time panel"),
-    new Divider(at("panels"), at("log"), "Size of the log"),
+    new Divider(at("lanes"), at("curves"), "Height of the curves"), new Divider(at("panels"), at("log"), "Size of the log"),
   ];
   const page = new Page({ run, selection, time, axis: context.axis, commands, world, map, tabs, beside, dividers });
   listenToKeys(time);
@@ -138,7 +138,7 @@ class Page {
     this.selection.onChange(stale);
     this.commands.onChange(stale);
     const sizes = new ResizeObserver(stale);
-    for (const id of ["map", "timeline", "log", "when"]) sizes.observe(document.getElementById(id));
+    for (const id of ["map", "timeline", "log", "when", "lanes", "curves"]) sizes.observe(document.getElementById(id));
     document.body.classList.remove("starting");
     const tick = (moment) => {
       this.tick(this.last === undefined ? 0 : Math.min(0.25, (moment - this.last) / 1000));
