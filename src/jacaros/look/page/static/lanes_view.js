@@ -24,7 +24,7 @@ export class LanesView {
     this.space = element("div");
     this.tip = element("p", "lanes-tip");
     this.tip.hidden = true;
-    this.cursor = element("button", "cursor");
+    this.cursor = element("button", "cursor", "Bars: the arrow keys move from one to the next");
     this.filter = element("input", "entry");
     Object.assign(this.filter, { placeholder: "Filter agents", ariaLabel: "Filter agents" });
     root.append(this.cursor, this.canvas, this.space);
