@@ -146,14 +146,18 @@ class Recording:
         return recording
 
     def _take_all(self, lines: list[str], path: Path) -> None:
+        """Take all lines out of a list: the memory of each is free once it is read."""
         described = damaged = False
-        for number, line in enumerate(lines, 1):
+        last = len(lines)
+        lines.reverse()
+        for number in range(1, last + 1):
+            line = lines.pop()
             try:
                 record = _record(line)
                 self._take(record)
                 described = described or isinstance(record, WorldLine)
             except (ValueError, RecursionError) as error:
-                cut_off = number == len(lines) or line.startswith(_BEGINNING)
+                cut_off = number == last or line.startswith(_BEGINNING)
                 if (cut_off and isinstance(error, json.JSONDecodeError)) or self.warnings:
                     damaged = True
                     continue
@@ -227,11 +231,14 @@ def _lines(path: Path, warnings: list[str]) -> list[str]:
             )
         if broken:
             warnings.append(f"{path} is damaged: what can be read of it is shown")
-    whole, end, cut_off = data.rpartition(b"\n")
+    end = data.rfind(b"\n") + 1
+    cut_off, data = data[end:], data[: max(0, end - 1)]
     try:
-        lines = text_of(whole).split("\n") if end else []
+        text = text_of(data)
     except UnicodeError as error:
         raise _not_a_recording(str(path), str(error)) from None
+    del data  # hours of a run are hundreds of megabytes
+    lines = text.split("\n") if end else []
     # The last line may be truncated in the middle of a character.
     return [*lines, cut_off.decode("utf-8", "replace")] if cut_off else lines
 
