@@ -104,7 +104,7 @@ class _Sheet:
 
     def x(self, t: float) -> float:
         share = (t - self.start) / ((self.end - self.start) or 1.0)
-        return round(_LEFT + share * (_WIDTH - _LEFT - _RIGHT), 2)
+        return round(_LEFT + share * (_WIDTH - _LEFT - _RIGHT), 1)
 
 
 class _Scale:
@@ -119,7 +119,7 @@ class _Scale:
 
     def y(self, value: float) -> float:
         low, high = self.ticks[0], self.ticks[-1]
-        return round(self._bottom - (value - low) / (high - low) * _HEIGHT, 2)
+        return round(self._bottom - (value - low) / (high - low) * _HEIGHT, 1)
 
 
 def _range(curves: Iterable[tuple[str, Series]]) -> tuple[float, float]:
