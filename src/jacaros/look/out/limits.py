@@ -11,7 +11,7 @@ _GENERATED_LABEL = re.compile(r"p__\d+")
 
 
 def limits(recording: Recording, series: Series, known: Sequence[Series]) -> list[tuple[str, Series]]:
-    """Return the limits of a belief or property, each with the plans and rules that compare it.
+    """Return the limits of a belief or property, labelled with their values and the plans that compare them.
 
     Args:
         recording: the recording, whose `program` records name the comparisons.
@@ -31,7 +31,7 @@ def limits(recording: Recording, series: Series, known: Sequence[Series]) -> lis
                 key = limit.owner, f"{limit.name}.{limit.field}"
                 found[key] = limit
                 labels.setdefault(key, {})[each.get("rule") or _plan(program, each.get("plan"))] = None
-    return [(", ".join(labels[key]), limit) for key, limit in found.items()]
+    return [(f"{limit.name}: {', '.join(labels[key])}", limit) for key, limit in found.items()]
 
 
 def _programs(recording: Recording) -> dict[str, Mapping[str, Any]]:

@@ -78,3 +78,26 @@ def test_an_export_overwrites_nothing_else(run: Path, outcome: Outcome, output: 
     assert errors.startswith(f"error: {error}")
     assert Path("package.json").read_text(encoding="utf-8") == '{"name": "mine"}'
     assert not list(Path().glob("*.mcap"))
+
+
+def test_values_that_programs_compare_are_drawn_once_with_their_plans(run: Path, told: Told) -> None:
+    plans = [
+        {"id": 1, "label": "charge", "trigger": "+battery(B)"},
+        {"id": 2, "label": "p__2", "trigger": "+!go"},
+    ]
+    of_plans = [
+        {"belief": "battery", "argument": 0, "operator": "<", "value": 85.0, "plan": plan} for plan in (1, 2)
+    ]
+    of_rule = {"belief": "battery", "argument": 0, "operator": "<", "other": "limit", "rule": "low"}
+    far = {"belief": "battery", "argument": 0, "operator": ">", "value": 150.0, "rule": "is_percent"}
+    for agent in ("one", "two"):
+        program = {"agent": agent, "plans": plans, "thresholds": [*of_plans, of_rule, far]}
+        limit = {"agent": agent, "op": "+", "belief": "limit(82)"}
+        with Path("run.jsonl").open("a", encoding="utf-8") as file:
+            for kind, data in (("program", program), ("belief", limit)):
+                file.write(json.dumps({"kind": "event", "t": 3.0, "event": kind, "data": data}) + "\n")
+    told("plot", "run.jsonl", "battery", "-o", "run.svg")
+    svg = Path("run.svg").read_text(encoding="utf-8")
+    assert svg.count("85: @charge, +!go<") == 1
+    assert svg.count("limit: low<") == 1
+    assert "is_percent" not in svg, "far from the curves"
