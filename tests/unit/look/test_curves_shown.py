@@ -92,24 +92,24 @@ def test_a_long_curve_has_two_points_for_each_pixel_and_keeps_its_peaks(tmp_path
 @needs_chromium
 async def test_what_contexts_compare_and_where_the_robot_is_are_drawn_at_first() -> None:
     async with replayed(recorded(), at=30.0) as page:
-        assert await chips(page) == ["bob battery 30 %", "r1 x 3 m", "r1 y 1 m"]
+        assert await chips(page) == ["bob:battery 30 %", "r1.x 3 m", "r1.y 1 m"]
         titles = await page.evaluate("[...document.querySelector('.more').options].map((each) => each.text)")
-        assert {"bob limit", "r1 speed", "a pose(#,_,_)"} <= set(titles)
+        assert {"bob:limit", "r1.speed", "a:pose.1"} <= set(titles)
         assert not any("place" in title for title in titles), "several at one time are not one number"
 
 
 @needs_chromium
 async def test_curves_are_chosen_where_numbers_are_shown_and_remembered() -> None:
     async with replayed(recorded(), at=30.0) as page:
-        await page.click("button[aria-label='Remove the curve of r1 x']")
+        await page.click("button[aria-label='Remove the curve of r1.x']")
         await page.click("#tab-artifacts")
         await page.click("button[aria-label^='Curve of pose']")
         await page.wait_for("document.querySelector('#artifacts .plot[aria-pressed=true]')")
         assert await chips(page) == [
-            "bob battery 30 %",
-            "r1 y 1 m",
-            "a pose(#,_,_) 1.5",
-            "a pose(_,_,#) 7",
+            "bob:battery 30 %",
+            "r1.y 1 m",
+            "a:pose.1 1.5",
+            "a:pose.3 7",
         ]
         await page.evaluate("location.reload()")
         await page.wait_for("document.querySelectorAll('.chip').length === 4")
@@ -127,7 +127,7 @@ async def test_a_robot_is_dragged_to_the_curves() -> None:
     async with replayed(recorded(), at=30.0, more="&curves=robot r1 speed") as page:
         await page.evaluate(DRAGGED)
         await page.wait_for("document.querySelectorAll('.chip').length === 4")
-        assert await chips(page) == ["r1 speed 0.1 m/s", "r1 battery 90 %", "r1 x 3 m", "r1 y 1 m"]
+        assert await chips(page) == ["r1.speed 0.1 m/s", "r1.battery 90 %", "r1.x 3 m", "r1.y 1 m"]
 
 
 DRAWN = """(() => {
@@ -158,5 +158,5 @@ async def test_the_pointer_reads_values(key: str) -> None:
         )
         await page.call("Input.dispatchMouseEvent", type="mouseMoved", x=box[0] + box[2] - 14, y=box[1] + 20)
         await page.wait_for("document.querySelector('.plot .tip').checkVisibility()")
-        expected = {"belief bob battery 0": "bob battery 12 %", "robot r1 x": "r1 x 3.99 m"}
-        assert expected.get(key, "a pose(_,_,#) 7") in await page.text(".plot .tip"), json.dumps(key)
+        expected = {"belief bob battery 0": "bob:battery 12 %", "robot r1 x": "r1.x 3.99 m"}
+        assert expected.get(key, "a:pose.3 7") in await page.text(".plot .tip"), json.dumps(key)

@@ -81,8 +81,8 @@ export class SeriesSources {
 
   /** The source of a numeric argument of a group. */
   numbered({ prefix, name, of, agent }, values, argument) {
-    const place = values.length > 1 ? `${name}(${values.map((_, i) => (i === argument ? "#" : "_")).join(",")})` : name;
-    return this.source(`${prefix} ${name} ${argument}`, () => ({ name, argument, agent, of, unit: UNITS[name] ?? "", title: `${of} ${place}` }));
+    const place = values.length > 1 ? `${name}.${argument + 1}` : name;  // a name that `jacaros plot` knows
+    return this.source(`${prefix} ${name} ${argument}`, () => ({ name, argument, agent, of, unit: UNITS[name] ?? "", title: `${of}:${place}` }));
   }
 }
 
@@ -120,7 +120,7 @@ const TAKE = {
   laser(all, t, { robot, ranges }) {
     let nearest = Infinity;
     for (const range of ranges) if (range > 0 && range < nearest) nearest = range;
-    if (nearest < Infinity) all.put(all.source(`robot ${robot} laser`, () => ({ ...STATE, name: "laser", unit: "m", of: robot, title: `${robot} nearest echo` })), t, nearest / 100);
+    if (nearest < Infinity) all.put(all.source(`robot ${robot} laser`, () => ({ ...STATE, name: "laser", unit: "m", of: robot, title: `${robot}.laser` })), t, nearest / 100);
   },
   property(all, t, { artifact, name, key, values }) {
     const group = all.group(`${artifact} ${name}`, () => ({ prefix: `property ${artifact}`, name, of: artifact.split("/").at(-1) }));
@@ -145,7 +145,7 @@ const STATE = { argument: 0, isStep: false };
 /** Make the sources of a robot's state. The world keeps its pose and battery. */
 function robotSources(all, index) {
   const { world } = all, robot = world.robot(index).name;
-  const source = (name, unit, more) => all.source(`robot ${robot} ${name}`, () => ({ ...STATE, name, unit, of: robot, title: `${robot} ${name}`, ...more }));
+  const source = (name, unit, more) => all.source(`robot ${robot} ${name}`, () => ({ ...STATE, name, unit, of: robot, title: `${robot}.${name}`, ...more }));
   for (const [name, unit, scale] of ROBOT) {
     const track = { get times() { return world.times; }, get values() { return world.columns[index][name]; } };
     if (name !== "battery" || track.values.at(-1) >= 0) source(name, unit, { scale, track });
