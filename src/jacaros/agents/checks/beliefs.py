@@ -52,21 +52,6 @@ _MOST_OPTIONS: Final = 8
 # Names.
 
 
-def is_fact_of(asked: nodes.Literal, fact: nodes.Literal) -> bool:
-    """Return whether a literal asks for values that a fact of another name has.
-
-    It does if there are constant arguments, and the fact has the same constants in those places.
-    """
-    if len(asked.arguments) != len(fact.arguments):
-        return False
-    pairs = [
-        (format_term(one), format_term(other))
-        for one, other in zip(asked.arguments, fact.arguments, strict=True)
-        if not isinstance(one, nodes.Variable)
-    ]
-    return bool(pairs) and all(one == other for one, other in pairs)
-
-
 def is_misspelt(written: str, meant: str) -> bool:
     """Return whether *written* is clearly a misspelling of *meant*.
 
@@ -99,14 +84,22 @@ def mismatches(flow: ProgramFlow, adders: Mapping[str, Sequence[Adder]]) -> Iter
         flow: a program.
         adders: all that can give its agent beliefs, by name.
     """
-    clauses = {id(each.clause): each.clause for each in flow.readers if is_own(each.literal)}
     for reader in flow.readers:
         name, size = reader.key
         if is_own(reader.literal):
             same = [each for each in adders.get(name, ()) if each.size in (None, size)]
             yield from _mismatch(reader, same)
-    for clause in clauses.values():
+
+
+def comparisons(flow: ProgramFlow, adders: Mapping[str, Sequence[Adder]]) -> Iterator[Diagnostic]:
+    """Return warnings about values of beliefs that are compared with other kinds, or numbers in other units."""
+    for clause in _clauses(flow):
         yield from _comparisons(clause, variables_of(clause, adders))
+
+
+def _clauses(flow: ProgramFlow) -> Iterable[nodes.Node]:
+    """Return the program's own plans, rules and goals that read beliefs."""
+    return {id(each.clause): each.clause for each in flow.readers if is_own(each.literal)}.values()
 
 
 def unmet_goals(program: nodes.Program, adders: Mapping[str, Sequence[Adder]]) -> Iterator[Diagnostic]:
@@ -117,7 +110,8 @@ def unmet_goals(program: nodes.Program, adders: Mapping[str, Sequence[Adder]]) -
         if (trigger.operator, trigger.kind) == ("+", "!"):
             if not isinstance(trigger.literal, nodes.Literal):
                 return
-            plans.setdefault(key_of(trigger.literal), []).append(plan)
+            if not _refuses(plan):
+                plans.setdefault(key_of(trigger.literal), []).append(plan)
     posted = [*program.goals, *(step.goal for step in nodes_in(nodes.Achieve, program.plans))]
     for goal in posted:
         if not isinstance(goal, nodes.Literal) or not is_own(goal):
@@ -127,6 +121,13 @@ def unmet_goals(program: nodes.Program, adders: Mapping[str, Sequence[Adder]]) -
                 found = [_unmet(plan, place, argument, adders) for plan in plans.get(key_of(goal), ())]
                 if found and (first := found[0]) and all(found):
                     yield replace(first, message=f"no plan for `!{_text(goal)}`: {first.message}")
+
+
+def _refuses(plan: nodes.Plan) -> bool:
+    """Return whether a plan ends in ``.fail``: it only says why no other plan applies."""
+    last = plan.body.steps[-1:] if isinstance(plan.body, nodes.Body) else ()
+    calls = (each.formula for each in last if isinstance(each, nodes.Constraint))
+    return any(isinstance(each, nodes.InternalAction) and each.name == ".fail" for each in calls)
 
 
 def _unmet(
@@ -347,8 +348,7 @@ def mixed_units(
     """
     for action in flow.actions:
         yield from _turns(action, parameters.get(key_of(action), ()))
-    clauses = {id(each.clause): each.clause for each in flow.readers if is_own(each.literal)}
-    for clause in clauses.values() if parameters else ():
+    for clause in _clauses(flow) if parameters else ():
         variables = variables_of(clause, adders)
         for step in nodes_in(nodes.ExternalAction, clause):
             if isinstance(step.action, nodes.Literal):

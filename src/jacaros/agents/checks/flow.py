@@ -24,6 +24,10 @@ Key = tuple[str, int]
 """Name and number of arguments; the name of a strongly negated belief begins with ``~``."""
 
 
+ANY: Final = -1
+"""A number of arguments that is not known."""
+
+
 @dataclass(frozen=True, slots=True)
 class Value:
     """What is known of an argument.
@@ -156,9 +160,9 @@ def key_of(literal: nodes.Literal) -> Key:
     return (f"~{name}" if literal.negated else name), len(literal.arguments)
 
 
-def is_own(literal: nodes.Literal) -> bool:
-    """Return whether a literal is in a file of the project, not in a library of JaCaROS."""
-    return literal.span is not None and not literal.span.file.name.startswith("$")
+def is_own(node: nodes.Node) -> bool:
+    """Return whether a node is in a file of the project, not in a library of JaCaROS."""
+    return node.span is not None and not node.span.file.name.startswith("$")
 
 
 def source_of(literal: nodes.Literal) -> str:
@@ -278,8 +282,8 @@ def _given(clause: nodes.Node) -> Iterator[nodes.Literal]:
         if isinstance(node, nodes.Trigger):
             if node.kind == "" and isinstance(node.literal, nodes.Literal):
                 yield node.literal
-        elif isinstance(node, nodes.Literal):
-            if asked and node.namespace is None:
+        elif isinstance(node, nodes.Literal) and asked:
+            if node.namespace is None:
                 yield node
         elif isinstance(node, nodes.And | nodes.Or):
             stack += [(each, asked) for each in node.operands]
@@ -291,7 +295,7 @@ def _given(clause: nodes.Node) -> Iterator[nodes.Literal]:
 # Collecting.
 
 _WORD: Final = re.compile(r"\w+")
-_READABLE: Final = re.compile(r"[(+!:]|<-")
+_READABLE: Final = re.compile(r"\w\(|<-|^\s*[-+!?]")
 """Text that may be read as a term, goal or plan."""
 _READ: Final = ".term2string"
 _DELETES: Final = ".abolish"
@@ -365,8 +369,12 @@ class _Collector:
             case nodes.Rule():
                 self._add(self.found.adders, "rule", node.head, node)
                 self._push(_At(asked=True), node.body)
-            case nodes.RuleTerm():
-                self._push(at, node.rule)
+            case nodes.Relation(operator="=..", right=nodes.ListTerm(items=items)):
+                # Of any size.
+                self.found.mentioned |= {
+                    (key_of(each)[0], ANY) for each in items[:1] if isinstance(each, nodes.Literal)
+                }
+                self._push_children(node, at)
             case nodes.Not():
                 self._push(at._replace(denied=True), node.operand)
             case nodes.And() | nodes.Or():
@@ -411,14 +419,14 @@ class _Collector:
                 return
             self._read("condition", literal, denied=at.denied)
             at = _At(passed=False)
-        elif at.passed:
+        elif at.passed and is_own(literal):
             self.found.mentioned.add(key_of(literal))
         asked = set(map(id, conditions(literal)))
         for each in reversed(list(_below(literal))):
             self._stack.append((each, at._replace(asked=id(each) in asked)))
 
     def _string(self, string: nodes.String, at: _At) -> None:
-        if at.passed:
+        if at.passed and is_own(string):
             words = _WORD.findall(string.value)
             self.found.said.update(words)
             if at.read or _READABLE.search(string.value):

@@ -114,14 +114,10 @@ def test_each_place_where_a_property_is_queried(folder: Path, use: str) -> None:
             "obstacel/1 obstacle?",
         ),
         ('!have("Radar"). +!have(T) <- makeArtifact(r, T).' + REACTS, "obstacel/1 obstacle?"),
-        ("zone(a). !go. +!go : zones(a) <- .print(a).", "zones/1 zone?"),
-        ("zone(a). !go. +!go <- ?zones(a).", "zones/1 zone?"),
-        ("zone(a). !go. near :- zones(a). +!go : near <- .print(a).", "zones/1 zone?"),
     ],
     ids=[
         *("signal", "initial belief", "note", "rule", "whatever artifacts exist"),
         *("type in a library goal", "type through two goals", "type in a goal"),
-        *("fact in a context", "fact in a query", "fact in a rule"),
     ],
 )
 def test_each_source_of_a_name_counts(folder: Path, program: str, names: str) -> None:

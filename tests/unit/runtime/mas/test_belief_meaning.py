@@ -78,11 +78,24 @@ def _marked(each: Diagnostic) -> str:
         ("!go. +!go <- .send(self, tell, done). +done : ready.", "ready"),
         ("mode(a). !go. +!go : mode(a) & ready <- .print(ready).", "ready"),
         ("mode(ready). !go. +!go : mode(ready) & ready <- .print(a).", "ready"),
+        ("zone(a). !go. +!go : zones(a) <- .print(a).", "zones(a)"),
         ("at(1, 2). !go. +!go : at(X) <- .print(X).", "at(X)"),
     ],
 )
 def test_a_belief_that_nothing_adds_is_unknown(tmp_path: Path, program: str, place: str) -> None:
     assert told(tmp_path, program) == [f"unknown-belief {place}"]
+
+
+@pytest.mark.parametrize(
+    ("program", "help"),
+    [
+        ("zone(a). !go. +!go : zones(a) <- .print(a).", "did you mean `zone`?"),
+        ("!go. +!go : ready <- .print(a).", "add it in a plan (`+ready`), or at the beginning (`ready.`)"),
+        ("at(1, 2). !go. +!go : at(X) <- .print(X).", "did you mean `at/2`?"),
+    ],
+)
+def test_the_help_names_what_is_there(tmp_path: Path, program: str, help: str) -> None:
+    assert [each.help for each in found(tmp_path, program)] == [help]
 
 
 @pytest.mark.parametrize(
@@ -181,6 +194,8 @@ def test_units_of_parameters_are_those_of_the_values(tmp_path: Path, step: str, 
         ("!go. +!go <- -+mode(go). +mode(stop) <- .print(a).", "stop"),
         ("!go. +!go <- .send(self, tell, mode(go)). +mode(stop) <- .print(a).", "stop"),
         ("at(a). at(b). !go(c). +!go(P) : at(P) <- .print(P).", "c"),
+        ("at(a). at(b). !go(c). +!go(P) : at(P) <- .print(P). +!go(P) <- .print(P); .fail.", "c"),
+        ("at(a). !go. +!go <- !to[achieves(at(b))]. +!to.", "b"),
         ('at(a). at(b). !go. +!go <- !to("a"). +!to(P) : at(P) <- .print(P).', '"a"'),
         ('at(a). at(b). at("c"). !go. +!go : at(P) <- .print(P).', '"c"'),
         ('!go. +!go <- .broadcast(tell, "ready").', '"ready"'),
@@ -202,6 +217,8 @@ def test_a_value_that_nothing_gives_never_matches(tmp_path: Path, program: str, 
         "mode(a). !go. +!go(X) : mode(X) <- .print(X). +!go <- !go(a).",
         "at(a). !go(c). +!go(P) : at(P) <- .print(P). +!go(P) <- .print(P).",
         'at(a). at("b"). !go. +!go : at(P) <- .print(P).',
+        "!go. +!go : not ready <- .print(a).",
+        "+other_publisher(T, N) <- .print(T, N).",
         "p(1). !go. +!go <- for (p(X)) { .print(X) }; X = after; .print(X).",
     ],
 )

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from jacaros.agents.checks.beliefs import (
-    is_fact_of,
+    comparisons,
     is_misspelt,
     mismatches,
     mixed_facts,
@@ -22,13 +22,13 @@ from jacaros.agents.checks.beliefs import (
     told_texts,
     unmet_goals,
 )
-from jacaros.agents.checks.flow import Adder, Flow, Key, ProgramFlow, Reader, flow_of, is_own, source_of
+from jacaros.agents.checks.flow import ANY, Adder, Flow, Key, ProgramFlow, Reader, flow_of, is_own, source_of
 from jacaros.agents.language import nodes
-from jacaros.agents.language.cursor import is_slip_of
 from jacaros.agents.language.diagnostics import Diagnostic, problem
 from jacaros.agents.language.lowering import format_term
 from jacaros.agents.language.nodes import parts_of
 from jacaros.agents.mind.actions.internal_action import STANDARD
+from jacaros.runtime.files import texts as file_texts
 from jacaros.runtime.files.texts import close_matches, did_you_mean, file_bytes
 
 if TYPE_CHECKING:
@@ -38,11 +38,13 @@ MISSPELT: Final = "misspelt-belief"
 NEVER: Final = "event-never-happens"
 UNKNOWN: Final = "unknown-belief"
 
-_TEXTS: Final = (".asl", ".py", ".mas2j", ".jcm", ".yaml", ".yml")
+_TEXTS: Final = (".asl", ".py", ".yaml", ".yml")
 """Kinds of files that may contain the name of a belief."""
 _WORD: Final = re.compile(r"\w+")
-_TELLS: Final = re.compile(r"\b(?:tell|tellHow|signal)\b")
-"""What a program of another project needs in order to give agents beliefs."""
+_GIVES: Final = re.compile(
+    r"\b(?:tell|tellHow|signal|believe\w*|perceive\w*|\w+_belief|define_property|PythonAgent)\b"
+)
+"""What other programs and Python files need in order to give agents beliefs."""
 MAPPINGS: Final = (".yaml", ".yml")
 _MOST_FILES, _DEEPEST = 500, 4
 """A folder with more files is not a project, so nothing is certain there. Files in deeper folders are ignored."""
@@ -143,16 +145,17 @@ class _BeliefCheck:
                 if is_own(reader.literal) and reader.key[0] not in doubtful:
                     yield from self._of_reader(reader, adders)
             if self._is_closed:
-                uncertain = doubtful.union(name for name, _ in self._mentioned)
-                certain = {name: each for name, each in adders.items() if name not in uncertain}
-                yield from mismatches(flow, certain)
-                yield from unmet_goals(program, certain)
-                yield from mixed_units(flow, certain, self._units)
+                composed = {name for name, size in self._mentioned if size}.union(*said)
+                here = {name: each for name, each in adders.items() if name not in composed}
+                certain = {name: each for name, each in here.items() if name not in doubtful}
+                yield from (*mismatches(flow, certain), *unmet_goals(program, certain))
+                # Whatever else adds a belief, it does so in the same units.
+                yield from (*comparisons(flow, here), *mixed_units(flow, here, self._units))
 
     def _of_reader(self, reader: Reader, adders: Mapping[str, Sequence[Adder]]) -> Iterator[Diagnostic]:
         """Return a warning about a belief that is never added, or never with this source or arity."""
         (name, size), literal = reader.key, reader.literal
-        if (name, size) in self._mentioned or (name, 0) in self._mentioned:
+        if not self._mentioned.isdisjoint([(name, size), (name, 0), (name, ANY)]):
             return
         # A plan for a test goal causes no event, but shows that the name is meant.
         is_event = reader.how == "event"
@@ -178,20 +181,20 @@ class _BeliefCheck:
         (name, size), literal = reader.key, reader.literal
         if any(name.endswith(f"_{each}") for each in self._observables):
             return  # some properties begin with the name of the robot
-        similar = [each for each in adders if is_misspelt(name, each)] or _forms(reader, adders)
+        similar = [each for each in adders if is_misspelt(name, each)]
         message = f"belief `{name}/{size}` is never added"
         if any(meant == name for meant, _ in self._misspelt.values()):
             return  # the belief that is added is misspelt
         if similar:
             yield problem(MISSPELT, message, literal.span, did_you_mean([min(similar)]))
-        elif self._is_closed and reader.key not in self._reported:
+        elif self._is_closed and not reader.denied and reader.key not in self._reported:
             self._reported.add(reader.key)  # nothing is right about the other places either
+            shipped = _shipped_with(name)
+            if self._is_lone and (shipped or _is_built_in(name)):
+                return  # it is run with that artifact
             private = [each for flow in self._flow.programs for each in flow.adders.get(name, ())]
-            if private:
-                yield problem(UNKNOWN, message, literal.span, _to_be_told(private[0]))
-            elif not (shipped := _shipped_with(name)) or not self._is_lone:
-                near = did_you_mean(close_matches(name, adders))
-                yield problem(UNKNOWN, message, literal.span, near or _to_be_added(literal, shipped))
+            near = _to_be_told(private[0]) if private else did_you_mean(close_matches(name, adders))
+            yield problem(UNKNOWN, message, literal.span, near or _to_be_added(literal, shipped))
 
     def _never_read(self, doubtful: frozenset[str]) -> Iterator[Diagnostic]:
         """Return warnings about beliefs that nothing reads, and whose names are nearly those of others that are read."""
@@ -215,12 +218,11 @@ def _of_other_size(name: str, adders: Sequence[Adder], read: Set[int]) -> Iterat
     used = read & {each.size for each in adders}
     for each in adders if used else ():
         if each.size not in read and each.literal is not None and is_own(each.literal):
-            texts = ", ".join(f"`{name}/{size}`" for size in sorted(read))
-            message = f"belief `{name}/{each.size}` is added, but only {texts} is read"
-            usage = next(other.literal for other in adders if other.size in used)
-            yield problem(
-                UNKNOWN, message, each.literal.span, f"write it as `{format_term(usage)}`" if usage else None
-            )
+            others = ", ".join(f"`{name}/{size}`" for size in sorted(read))
+            message = f"belief `{name}/{each.size}` is added, but only {others} is read"
+            texts = [other.literal for other in adders if other.size in used and other.literal is not None]
+            help = did_you_mean(map(format_term, texts[:1]))
+            yield problem(UNKNOWN, message, each.literal.span, help or None)
 
 
 def _misspelt_adders(
@@ -246,19 +248,6 @@ def _misspelt_adders(
         if meant and (meant in added or meant in known or reads[meant] > len(added[name])):
             found[name] = meant, added[name]
     return found
-
-
-def _forms(reader: Reader, adders: Mapping[str, Sequence[Adder]]) -> list[str]:
-    """Return names that are another form of a word (``zone``, ``zones``) and have a fact that answers the query."""
-    return [
-        known
-        for known, each in adders.items()
-        if is_slip_of(reader.key[0], known)
-        and any(
-            fact.how == "fact" and fact.literal is not None and is_fact_of(reader.literal, fact.literal)
-            for fact in each
-        )
-    ]
 
 
 def _from_wrong_source(reader: Reader, adders: Sequence[Adder]) -> Iterator[Diagnostic]:
@@ -312,13 +301,22 @@ def _to_be_added(literal: nodes.Literal, shipped: str) -> str:
 
 def _shipped_with(name: str) -> str:
     """Return the mapping of JaCaROS that has a property or signal; empty if none has it."""
-    from jacaros.robots.mapping.file import SHIPPED, shipped_mappings
+    from jacaros.robots.mapping.file import SHIPPED
 
-    pattern = re.compile(rf"^ +{re.escape(name)}:", re.MULTILINE)
-    for file in shipped_mappings():
-        if pattern.search((SHIPPED / file).read_text(encoding="utf-8")):
-            return file
-    return ""
+    entry = re.compile(rf"^ +{re.escape(name)}:", re.MULTILINE)
+    return next((path.name for path in sorted(SHIPPED.glob("*.yaml")) if entry.search(_read(path))), "")
+
+
+def _is_built_in(name: str) -> bool:
+    """Return whether code of JaCaROS's own artifacts defines a property or signal of this name."""
+    defines = re.compile(rf"\b(?:define_property|signal|robot_property)\(\s*\"{re.escape(name)}\"")
+    package = Path(file_texts.__file__).parents[2]
+    files = (path for folder in ("artifacts", "robots") for path in (package / folder).rglob("*.py"))
+    return any(defines.search(_read(path)) for path in files)
+
+
+def _read(path: Path) -> str:
+    return file_bytes(path).decode(errors="replace")
 
 
 # Other files.
@@ -341,10 +339,10 @@ def words_elsewhere(folders: Iterable[Path], known: Set[Path], with_mappings: bo
         if path.resolve() in known or (path.suffix in MAPPINGS and not with_mappings and is_mapping(path)):
             continue
         try:
-            text = file_bytes(path).decode(errors="replace")
+            text = _read(path)
         except OSError:
             continue
-        if path.suffix != ".asl" or _TELLS.search(text):
+        if path.suffix not in (".asl", ".py") or _GIVES.search(text):
             found.update(_WORD.findall(text))
     return frozenset(found)
 

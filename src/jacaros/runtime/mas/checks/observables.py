@@ -38,7 +38,9 @@ def observables_of(types: "Iterable[type[Artifact]]") -> dict[str, list[Adder]] 
             for usage, text in described_usages(artifact_type, section):
                 found.setdefault(usage.partition("(")[0], []).append(_adder(how, usage, text))
         for name, usage in written_usages(artifact_type):
-            found.setdefault(name, []).append(_adder("property", usage, ""))
+            written, known = _adder("property", usage, ""), found.setdefault(name, [])
+            if all(each.size not in (None, written.size) for each in known):  # the description says more
+                known.append(written)
     return found
 
 
