@@ -21,7 +21,14 @@ OF_FILES = {
         "plan-too-large",
         "unknown-artifact-type",
     ),
-    *("unknown-message-type", "unknown-operation", "unknown-property", "unknown-resource", "unreadable-file"),
+    *(
+        "unknown-message-type",
+        "unknown-operation",
+        "unknown-property",
+        "unknown-resource",
+        "unreadable-file",
+        "unfocused-artifact",
+    ),
     *("wrong-mapping", "wrong-world", "wrong-project"),
 }
 TOO_LONG = {"nested-too-deeply"}

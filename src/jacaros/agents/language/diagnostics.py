@@ -177,7 +177,7 @@ _CODES: Final[dict[Severity, str]] = {
         plan-never-selected plan-too-large singleton-variable too-many unknown-artifact-type
         unknown-belief unknown-code unknown-goal unknown-internal-action unknown-library
         unknown-message-type unknown-operation unknown-performative unknown-property unknown-resource
-        unused-handler wrong-arguments wrong-needs wrong-supervision wrong-unit wrong-urgency
+        unfocused-artifact unused-handler wrong-arguments wrong-needs wrong-supervision wrong-unit wrong-urgency
     """,
     "note": """
         goal-never-posted narrow-handler not-imported quoted-atom short-wait

@@ -313,7 +313,7 @@ def _named_types(program: nodes.Program) -> tuple[list[_NamedType], bool]:
         certain &= bool(found) or place.of_library  # other goals come from outside
         for literal, plan in found:
             wanted = literal.arguments[place.argument]
-            name = _type_of(wanted)
+            name = type_of(wanted)
             if name is not None:
                 if plan is None or not _is_of_library(plan) or _key(plan.trigger.literal) in posted:
                     named.append(_NamedType(name, wanted, place.of_library))
@@ -325,7 +325,7 @@ def _named_types(program: nodes.Program) -> tuple[list[_NamedType], bool]:
     return named, certain
 
 
-def _type_of(wanted: nodes.Term) -> str | None:
+def type_of(wanted: nodes.Term) -> str | None:
     """Return the type that a term names; None if it is computed at run time."""
     if isinstance(wanted, nodes.String):
         return wanted.value

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass, field, replace
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -30,6 +31,7 @@ from jacaros.runtime.mas.deployment import AgentSpec, Deployment, ProjectError
 from jacaros.runtime.mas.project.reading import read_project
 
 if TYPE_CHECKING:
+    from jacaros.runtime.mas.checks.artifacts import FindType
     from jacaros.runtime.mas.checks.beliefs import Whole
 
 PROJECTS: Final = (".mas2j", ".jcm")
@@ -332,7 +334,34 @@ class _Checked:
         if is_known:
             helped = operations_as_goals(self.deployment, self.programs, find_type)
             self._findings.diagnostics[:] = map(helped, self._findings.diagnostics)
-        return check_artifacts(self.deployment, programs, self._folders, find_type)
+        found = check_artifacts(self.deployment, programs, self._folders, find_type)
+        return [*found, *self._of_agents(programs, find_type)]
+
+    def _of_agents(
+        self, programs: list[tuple[AgentSpec, nodes.Program]], find_type: "FindType"
+    ) -> list[Diagnostic]:
+        from jacaros.runtime.mas.checks.artifacts import made_types  # here: see `of_artifacts`
+        from jacaros.runtime.mas.checks.focusing import check_focus
+        from jacaros.runtime.mas.checks.observables import observables_of
+
+        trees = [program for _, program in programs]
+        types = made_types(self.deployment, trees, find_type)
+        if types is None:
+            return [each for tree in trees for each in missing_marks(tree, KnownActions(STANDARD))]
+        if not types or self.deployment.ignored:
+            return []
+
+        @cache
+        def properties(kind: str) -> Set[str] | None:
+            found = observables_of([find_type(kind)])
+            return None if found is None else found.keys()
+
+        # The same program may be that of several agents.
+        read = {agent.source_path: program for agent, program in programs}
+        every = [
+            (each, read[each.source_path]) for each in self.deployment.agents if each.source_path in read
+        ]
+        return check_focus(self.deployment, every or programs, properties)
 
     def check_goals(self) -> None:
         """Note plans for goals that no agent posts, in the folder of the project, unless parts of it are not run."""

@@ -1,0 +1,193 @@
+"""Check that agents focus the artifacts whose properties they use, and that some agent can reach each artifact.
+
+Only an agent whose program shows all that it focuses is looked at.
+"""
+
+import re
+from collections.abc import Iterable, Iterator, Sequence, Set
+from typing import TYPE_CHECKING, Final
+
+from jacaros.agents.checks.flow import Reader, flow_of, is_own
+from jacaros.agents.language import nodes
+from jacaros.agents.language.diagnostics import Diagnostic
+from jacaros.agents.language.nodes import ByKind, walk
+from jacaros.agents.mind.actions.internal_action import STANDARD
+from jacaros.runtime.mas.checks.artifacts import type_of
+from jacaros.runtime.mas.deployment import AgentSpec, Deployment
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    Properties = Callable[[str], Set[str] | None]
+
+CODE: Final = "unfocused-artifact"
+_FOCUSING: Final = frozenset({"focus", "focusWhenAvailable"})
+_MAIN: Final = "main"
+_WORD: Final = re.compile(r"\w+")
+
+Programs = Sequence[tuple[AgentSpec, nodes.Program]]
+
+
+def check_focus(deployment: Deployment, programs: Programs, properties: "Properties") -> list[Diagnostic]:
+    """Return warnings about properties of artifacts that agents do not focus, and artifacts that no agent can use.
+
+    Args:
+        deployment: the project.
+        programs: all its agents with their programs.
+        properties: returns the names of properties and signals of an artifact type; None if they are not known.
+    """
+    return [*_out_of_reach(deployment, programs), *_Focus(deployment, programs, properties).findings()]
+
+
+# ---- workspaces
+
+
+def _out_of_reach(deployment: Deployment, programs: Programs) -> Iterator[Diagnostic]:
+    joined = {name for agent, _ in programs for name in agent.join}
+    named = {word for _, program in programs for word in _words(program)}
+    for workspace in deployment.workspaces:
+        for artifact in workspace.artifacts:
+            names = {workspace.name, workspace.name.rpartition("/")[2], artifact.name}
+            if workspace.name in joined or _MAIN in names or names & named or artifact.span is None:
+                continue
+            message = f"no agent can use `{artifact.name}`: none joins workspace `{workspace.name}`"
+            help = f"write `focus: {workspace.name}.{artifact.name}` in the declaration of an agent"
+            yield Diagnostic("warning", message, artifact.span, help, CODE)
+
+
+def _words(program: nodes.Program) -> Iterator[str]:
+    for node in walk(program.beliefs, program.goals, program.plans):
+        if isinstance(node, nodes.String):
+            yield from _WORD.findall(node.value)
+        elif isinstance(node, nodes.Literal):
+            yield node.functor
+
+
+# ---- properties
+
+
+class _Focus:
+    """What the agents of a project focus."""
+
+    def __init__(self, deployment: Deployment, programs: Programs, properties: "Properties") -> None:
+        self._programs, self._properties = programs, properties
+        self._declared = {
+            (workspace.name, artifact.name): artifact
+            for workspace in deployment.workspaces
+            for artifact in workspace.artifacts
+        }
+        self._by_name: dict[str, set[str]] = {}
+        for artifact in self._declared.values():
+            self._by_name.setdefault(artifact.name, set()).add(artifact.type_name)
+        for _, program in programs:
+            for name, kind, _ in _made(program.plans):
+                if kind:
+                    self._by_name.setdefault(name, set()).add(kind)
+
+    def findings(self) -> Iterator[Diagnostic]:
+        """Return a warning for each property that an agent uses and does not focus."""
+        owners = self._owners()
+        if owners is None:
+            return
+        flows = [(agent, program, flow_of(program, STANDARD)) for agent, program in self._programs]
+        if any(flow.is_open or flow.tells_unseen or agent.agent_class for agent, _, flow in flows):
+            return
+        focused: dict[str, set[str]] = {}  # the properties that agents with a file focus
+        added = {name for _, _, flow in flows for name in (*flow.adders, *flow.told)}
+        for agent, program, flow in flows:
+            kinds = self._focused(agent, program)
+            if kinds is None:
+                return
+            seen = {name for kind in kinds for name in self._properties(kind) or ()}
+            for file in flow.files:
+                focused.setdefault(file, set()).update(seen)
+        for agent, _, flow in flows:
+            for reader in _first(flow.readers):
+                name = reader.key[0]
+                file = reader.literal.span.file.name if reader.literal.span is not None else ""
+                if name in owners and name not in added and name not in focused.get(file, owners):
+                    yield self._warning(agent, reader, owners[name])
+
+    def _warning(self, agent: AgentSpec, reader: Reader, kind: str) -> Diagnostic:
+        found = [(space, each.name) for (space, _), each in self._declared.items() if each.type_name == kind]
+        artifact = found[0][1] if found else kind
+        message = f"`{reader.key[0]}` comes from artifact `{artifact}`, which agent `{agent.declared_name}` does not focus"
+        help = (
+            f"write `focus: {'.'.join(found[0])}` in the declaration of agent `{agent.declared_name}`"
+            if found and agent.span is not None
+            else "focus the artifact after it is made: `makeArtifact(..., Id); focus(Id)`"
+        )
+        return Diagnostic("warning", message, reader.literal.span, help, CODE)
+
+    def _owners(self) -> dict[str, str] | None:
+        """Return the type of artifact that each property and signal comes from; None if they are not known."""
+        found: dict[str, str] = {}
+        for kind in sorted({kind for kinds in self._by_name.values() for kind in kinds}):
+            names = self._properties(kind)
+            if names is None:
+                return None
+            found |= dict.fromkeys(names, kind)
+        return found
+
+    def _focused(self, agent: AgentSpec, program: nodes.Program) -> set[str] | None:
+        """Return the types of artifacts that an agent focuses; None if its program computes them."""
+        found = {
+            artifact.type_name
+            for (space, name), artifact in self._declared.items()
+            if any(each.artifact == name and each.workspace in (None, space) for each in agent.focus)
+        }
+        goals = (step.goal for step in ByKind(program.plans).of(nodes.Achieve))
+        posted = {goal.functor for goal in goals if isinstance(goal, nodes.Literal)}
+        for plan in program.plans:
+            literal = plan.trigger.literal
+            focuses = [each for each in _actions(plan) if each.functor in _FOCUSING and each.arguments]
+            if focuses and not is_own(each := focuses[0]) and isinstance(literal, nodes.Literal):
+                if literal.functor in posted:
+                    return None
+                continue
+            for each in focuses:
+                kinds = self._meant(each.arguments[0], plan)
+                if kinds is None:
+                    return None
+                found |= kinds
+        return found
+
+    def _meant(self, term: nodes.Term, plan: nodes.Plan) -> set[str] | None:
+        """Return the types that an argument of ``focus`` may refer to."""
+        if isinstance(term, nodes.Variable):
+            made = {kind for _, kind, identifier in _made((plan,)) if identifier == term}
+            looked_up = [
+                each.arguments[0]
+                for each in _actions(plan)
+                if each.functor == "lookupArtifact" and each.arguments[1:] == (term,)
+            ]
+            names = [type_of(each) for each in looked_up]
+            if (not made and not names) or None in names:
+                return None
+            return made.union(*(self._by_name.get(name.rpartition(".")[2], set()) for name in names if name))
+        name = type_of(term)
+        return None if name is None else self._by_name.get(name.rpartition(".")[2])
+
+
+def _actions(plan: nodes.Plan) -> Iterator[nodes.Literal]:
+    for step in ByKind(plan.body, plan.subplans).of(nodes.ExternalAction):
+        if isinstance(step.action, nodes.Literal):
+            yield step.action
+
+
+def _made(plans: Iterable[nodes.Plan]) -> Iterator[tuple[str, str, nodes.Term | None]]:
+    """Yield name, type and identifier of the artifacts that plans make."""
+    for plan in plans:
+        for action in _actions(plan):
+            if action.functor == "makeArtifact" and len(action.arguments) >= 2:
+                name, kind = map(type_of, action.arguments[:2])
+                yield name or "", kind or "", action.arguments[3] if len(action.arguments) > 3 else None
+
+
+def _first(readers: Iterable[Reader]) -> Iterator[Reader]:
+    """Return the first reader of each belief in files of the project."""
+    found: dict[str, Reader] = {}
+    for reader in readers:
+        if is_own(reader.literal) and reader.how != "deletion":
+            found.setdefault(reader.key[0], reader)
+    yield from found.values()

@@ -1,0 +1,96 @@
+"""What `jacaros check` reports about artifacts that agents do not focus or cannot reach."""
+
+from pathlib import Path
+
+import pytest
+
+from jacaros.runtime.mas.checks.files import check_files
+
+ARTIFACTS = """
+from jacaros.artifacts import Artifact, operation
+
+class Counter(Artifact):
+    def init(self):
+        self.define_property("count", 0)
+
+    @operation
+    def inc(self):
+        self.update_property("count", self.value("count") + 1)
+
+class Lamp(Artifact):
+    def init(self):
+        self.define_property("lit", False)
+"""
+PROJECT = """
+mas p {{
+    agent ann: a.asl {{ {} }}
+    workspace lab {{ artifact c: Counter() artifact l: Lamp() }}
+}}
+"""
+COUNTS = "+count(N) <- .print(N)."
+
+
+def found(folder: Path, declared: str | None, program: str) -> list[tuple[str, str | None]]:
+    """Return messages and helps about focus in a project, or in a lone program if nothing is declared."""
+    (folder / "artifacts.py").write_text(ARTIFACTS, encoding="utf-8")
+    (folder / "a.asl").write_text(program, encoding="utf-8")
+    (folder / "p.jcm").write_text(PROJECT.format(declared), encoding="utf-8")
+    name = "a.asl" if declared is None else "p.jcm"
+    diagnostics = check_files([folder / name]).diagnostics
+    return [(each.message, each.help) for each in diagnostics if each.code == "unfocused-artifact"]
+
+
+def test_a_property_of_an_artifact_that_the_agent_does_not_focus_is_reported(tmp_path: Path) -> None:
+    assert found(tmp_path, "focus: lab.l", COUNTS) == [
+        (
+            "`count` comes from artifact `c`, which agent `ann` does not focus",
+            "write `focus: lab.c` in the declaration of agent `ann`",
+        )
+    ]
+
+
+def test_artifacts_of_a_workspace_that_no_agent_joins_are_reported(tmp_path: Path) -> None:
+    (c, lamp) = found(tmp_path, "", "!go.\n+!go <- .print(go).")
+    assert c == (
+        "no agent can use `c`: none joins workspace `lab`",
+        "write `focus: lab.c` in the declaration of an agent",
+    )
+    assert lamp[0] == "no agent can use `l`: none joins workspace `lab`"
+
+
+@pytest.mark.parametrize("declared", [None, "join: lab"])
+def test_an_artifact_that_a_program_makes_and_does_not_focus_is_reported(
+    tmp_path: Path, declared: str | None
+) -> None:
+    program = f'!go.\n+!go <- makeArtifact("mine", "Counter", [], _); inc.\n{COUNTS}'
+    ((message, help),) = found(tmp_path, declared, program)
+    assert message.startswith("`count` comes from artifact")
+    assert help is not None
+    assert "focus" in help
+
+
+@pytest.mark.parametrize(
+    ("declared", "program"),
+    [
+        ("focus: lab.c", COUNTS),
+        ("join: lab", f'!go.\n+!go <- lookupArtifact("c", Id); focus(Id).\n{COUNTS}'),
+        ("join: lab", f'!go.\n+!go <- focusWhenAvailable("lab.c").\n{COUNTS}'),
+        ("join: lab", f"!go.\n+!go <- ?name(N); lookupArtifact(N, Id); focus(Id).\nname(c).\n{COUNTS}"),
+        ("", '!go.\n+!go <- joinWorkspace("lab", W).'),
+        (None, f'!go.\n+!go <- makeArtifact("mine", "Counter", [], Id); focus(Id).\n{COUNTS}'),
+        (
+            None,
+            f'{{ include("$jacaros/artifacts.asl") }}\n!go.\n+!go <- !use_artifact("c", "Counter").\n{COUNTS}',
+        ),
+        ("join: lab", f"!go.\n+!go <- +count(3).\n{COUNTS}"),
+    ],
+)
+def test_agents_that_focus_or_get_the_belief_otherwise_are_not_reported(
+    tmp_path: Path, declared: str | None, program: str
+) -> None:
+    assert found(tmp_path, declared, program) == []
+
+
+def test_agents_with_the_same_program_count_as_one(tmp_path: Path) -> None:
+    both = "focus: lab.l }\n agent bob: a.asl { focus: lab.c"
+    assert found(tmp_path, both, COUNTS) == []
