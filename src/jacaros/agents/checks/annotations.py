@@ -7,7 +7,7 @@
 """
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import chain
 from typing import Final
 
@@ -36,6 +36,16 @@ _MEANT: Final = {
     for other in others.split()
 }
 """Words that say what an annotation means, and the annotation."""
+_OF_EVENTS: Final = {
+    "sender": "source",
+    "from": "source",
+    "failure_reason": "env_failure_reason",
+    "reason": "env_failure_reason",
+    "error_message": "error_msg",
+    "message": "error_msg",
+}
+_OF_ACTIONS: Final = {"artifact": "artifact_name", "workspace": "wsp"}
+"""Other words for annotations of triggers and of actions."""
 _ELSEWHERE: Final = {
     "label": "write it at the goal: `!g[{}]`",
     "goal": "write it in the label of a plan: `@p[{}] +!g <- ...`",
@@ -61,9 +71,18 @@ def wrong_labels(program: nodes.Program, found: ByKind) -> Iterator[Diagnostic]:
         *(_unlike(item, "label", (*_OF_PLANS, *_OF_LABELS)) for item in labels if id(item) not in tests),
         *(_unlike(item, "goal", (*_OF_GOALS, "needs", "policy")) for item in asked if item.arguments),
     ]
-    reported = [each for each in unlike if each is not None]
-    data = _read_by_program(found, [*labels, *asked]) if reported else set()
-    yield from (warning for item, warning in reported if item.functor not in data)
+    events = [item for each in found.of(nodes.Trigger) for item in annotations_of(each.literal)]
+    acts = [item for each in found.of(nodes.ExternalAction) for item in annotations_of(each.action)]
+    others = [
+        *(_other_word(item, "event", _OF_EVENTS) for item in events),
+        *(_other_word(item, "action", _OF_ACTIONS) for item in acts),
+    ]
+    for found_here, written in ((unlike, [*labels, *asked]), (others, [*events, *acts])):
+        reported = [each for each in found_here if each is not None]
+        data = _read_by_program(found, written) if reported else set()
+        if found_here is others:
+            data |= {item.functor for item in asked}
+        yield from (warning for item, warning in reported if item.functor not in data)
     for item in labels:
         if item.functor == "urgency" and not _is_urgency(item):
             yield problem(
@@ -85,6 +104,16 @@ def _unlike(item: nodes.Literal, what: str, words: Sequence[str]) -> tuple[nodes
     help = did_you_mean([written]) if word in words else _ELSEWHERE[what].format(written)
     message = f"{what} annotation `{name}` has no meaning"
     return item, problem("misspelt-annotation", message, item.span, help)
+
+
+def _other_word(
+    item: nodes.Literal, what: str, words: Mapping[str, str]
+) -> tuple[nodes.Literal, Diagnostic] | None:
+    if item.functor not in words or len(item.arguments) != 1:
+        return None
+    meant = format_term(replace(item, functor=words[item.functor]))
+    message = f"no {what} has the annotation `{item.functor}`"
+    return item, problem("misspelt-annotation", message, item.span, did_you_mean([meant]))
 
 
 def _read_by_program(found: ByKind, annotations: Sequence[nodes.Literal]) -> set[str]:

@@ -28,7 +28,7 @@ from jacaros.agents.checks.goals import (
     unknown_performatives,
     wrong_arguments,
 )
-from jacaros.agents.checks.handlers import unused_handlers
+from jacaros.agents.checks.handlers import facts_for_goals, unused_handlers
 from jacaros.agents.checks.loops import loops_without_wait
 from jacaros.agents.checks.unreachable import contexts_never_true, never_selected
 from jacaros.agents.language import nodes
@@ -161,7 +161,8 @@ def _mistakes(program: nodes.Program, known: KnownActions, errors: Sequence[Diag
         warnings += goals_without_plan(program, found, known)
         warnings += never_selected(program, found, known)
         warnings += loops_without_wait(program, found, known)
-        warnings += unused_handlers(ByKind(program.beliefs, program.goals, program.plans), known)
+        whole = ByKind(program.beliefs, program.goals, program.plans)
+        warnings += [*unused_handlers(whole, known), *facts_for_goals(program, whole)]
     return warnings
 
 

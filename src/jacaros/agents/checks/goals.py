@@ -185,6 +185,9 @@ def goals_without_plan(program: nodes.Program, found: ByKind, known: KnownAction
     posted += [mark.arguments[0] for mark in marks if mark.functor == "cleanup" and mark.arguments]
     if any(mark.functor == "test" for plan in program.plans for mark in labelled(plan)):
         everywhere |= _goals_of_tests()
+    with_plan = {_signature(each.literal) for each in triggers if each.operator != "-"}
+    # With a plan of that name for other arguments, one that only handles its failure is not enough.
+    handled -= {each for each in handled - with_plan if any(each[:2] == other[:2] for other in with_plan)}
     reported: set[_Signature] = set()
     for goal in posted:
         if not isinstance(goal, nodes.Literal) or isinstance(goal.namespace, nodes.Variable):
@@ -197,7 +200,7 @@ def goals_without_plan(program: nodes.Program, found: ByKind, known: KnownAction
             "unknown-goal",
             f"no plan for `{_goal_text(signature)}`",
             goal.span,
-            _meant_goal(signature, handled) if len(reported) <= MOST_ASKED else None,
+            _meant_goal(signature, with_plan & handled) if len(reported) <= MOST_ASKED else None,
         )
 
 

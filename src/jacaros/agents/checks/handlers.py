@@ -7,9 +7,11 @@
 """
 
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Final
 
+from jacaros.agents.checks.beliefs import is_misspelt
 from jacaros.agents.checks.formulas import labelled
 from jacaros.agents.checks.goals import PRINTING, KnownActions
 from jacaros.agents.language import nodes
@@ -49,8 +51,13 @@ class Posts:
         no_posts = (
             {id(each.literal) for each in triggers} | set(map(id, steps)) | set(map(id, walk(*printed)))
         )
-        self._literals = {
+        self._literals = Counter(
             _key(each) for one in found for each in one.of(nodes.Literal) if id(each) not in no_posts
+        )
+        self._reacted = {
+            _key(each.literal)
+            for each in triggers
+            if not each.kind and isinstance(each.literal, nodes.Literal)
         }
         texts = [each.value for one in found for each in one.of(nodes.String) if id(each) not in no_posts]
         self._words = {word for text in texts for word in _WORD.findall(text)}
@@ -58,6 +65,11 @@ class Posts:
     def may_post(self, goal: Key) -> bool:
         """Return whether a goal is posted, or may be: it appears in a term, or its name in a text."""
         return goal in self._literals or goal[0] in self._words or goal[0] == _OF_MESSAGES
+
+    def appears_only_as(self, facts: Sequence[nodes.Literal]) -> bool:
+        """Return whether the name of facts appears nowhere but in these and in plans for the goal of that name."""
+        key = _key(facts[0])
+        return self._literals[key] == len(facts) and key[0] not in self._words and key not in self._reacted
 
 
 def _key(literal: nodes.Literal) -> Key:
@@ -69,6 +81,7 @@ def unused_handlers(found: ByKind, known: KnownActions) -> Iterator[Diagnostic]:
     if is_open(found, known):
         return
     posts = Posts(found)
+    yield from _misspelt_plans(found, posts)
     for plan in found.of(nodes.Plan):
         trigger, literal = plan.trigger, plan.trigger.literal
         if (
@@ -91,6 +104,27 @@ def unused_handlers(found: ByKind, known: KnownActions) -> Iterator[Diagnostic]:
                 message,
                 trigger.span,
                 did_you_mean(f"-!{_text(each)}" for each in meant) or None,
+            )
+
+
+def _misspelt_plans(found: ByKind, posts: Posts) -> Iterator[Diagnostic]:
+    """Warn of plans for goals that nothing posts whose name is nearly that of a goal with a plan."""
+    posted = [step.goal for step in found.of(nodes.Achieve)]
+    known = {_key(goal) for goal in posted if isinstance(goal, nodes.Literal)} & posts.handled
+    for trigger in (plan.trigger for plan in found.of(nodes.Plan)):
+        literal = trigger.literal
+        if (
+            (trigger.operator, trigger.kind) != ("+", "!")
+            or not isinstance(literal, nodes.Literal)
+            or not _is_own(literal)
+        ):
+            continue
+        key = _key(literal)
+        meant = [name for name, size in sorted(known) if size == key[1] and is_misspelt(key[0], name)]
+        if meant and not posts.may_post(key):
+            message = f"nothing posts the goal `!{_text(key)}`"
+            yield problem(
+                "unused-handler", message, trigger.span, did_you_mean(f"+!{name}" for name in meant[:1])
             )
 
 
@@ -169,25 +203,37 @@ def with_mark(action: Key, posts: Posts, known: KnownActions) -> str:
     return f".{action[0]}" if internal is not None and internal.takes(action[1]) else ""
 
 
+def facts_for_goals(program: nodes.Program, found: ByKind) -> Iterator[Diagnostic]:
+    """Warn of initial beliefs that nothing reads, if there is a plan for the goal of that name and nothing posts it."""
+    posts = Posts(found)
+    facts: dict[Key, list[nodes.Literal]] = {}
+    for belief in program.beliefs:
+        if isinstance(belief, nodes.Literal) and _key(belief) in posts.handled and _is_own(belief):
+            facts.setdefault(_key(belief), []).append(belief)
+    for key, same in facts.items():
+        if posts.appears_only_as(same):
+            message = f"nothing reads the belief `{_text(key)}`, and nothing posts the goal `!{_text(key)}`"
+            yield problem("missing-mark", message, same[0].span, did_you_mean([f"!{key[0]}"]))
+
+
 def missing_marks(program: nodes.Program, known: KnownActions) -> Iterator[Diagnostic]:
     """Warn of actions, in a program whose artifacts are not known, that are certainly goals or internal actions.
 
-    They are goals if a plan handles the goal of that name, and nothing posts it; a plan for a goal may call the operation
-    of the same name.
+    They are goals if a plan handles the goal of that name, and nothing posts it or the plan is of a library of JaCaROS; a
+    plan for a goal may call the operation of the same name.
     """
-    found = ByKind(program.beliefs, program.goals, program.plans)
-    posts = Posts(found)
+    posts = Posts(ByKind(program.beliefs, program.goals, program.plans))
+    heads = [each.trigger.literal for each in program.plans]
+    own = {_key(head) for head in heads if isinstance(head, nodes.Literal) and _is_own(head)}
     for plan in program.plans:
         of = plan.trigger.literal.functor if isinstance(plan.trigger.literal, nodes.Literal) else ""
         for step in ByKind(plan.body, plan.subplans).of(nodes.ExternalAction):
-            if (
-                not isinstance(step.action, nodes.Literal)
-                or not _is_own(step.action)
-                or step.action.functor == of
-            ):
+            action = step.action
+            if not isinstance(action, nodes.Literal) or not _is_own(action) or action.functor == of:
                 continue
-            key = _key(step.action)
+            key = _key(action)
             meant = with_mark(key, posts, known)
-            if (meant.startswith("!") and not posts.may_post(key)) or meant[1:] in _OFTEN_MEANT:
+            is_goal = meant.startswith("!") and (key not in own or not posts.may_post(key))
+            if is_goal or meant[1:] in _OFTEN_MEANT:
                 message = f"`{_text(key)}` is an action of the environment: it has no mark of a goal or internal action"
                 yield problem("missing-mark", message, step.span, did_you_mean([meant]))

@@ -69,6 +69,11 @@ def test_a_goal_without_a_plan_is_reported_once_with_a_suggestion():
     assert (outside.message, outside.help) == ("no plan for `!m::show/0`", "write a plan for it: `+!m::show`")
 
 
+def test_a_failure_plan_alone_is_not_enough_beside_a_plan_for_other_arguments():
+    (warning,) = warnings("!go. +!go(_) <- .print(a). -!go <- .print(b).")
+    assert (warning.message, warning.help) == ("no plan for `!go/0`", "did you mean `!go/1`?")
+
+
 def test_every_kind_of_plan_silences_the_check_of_goals():
     assert messages("!g. -!g.") == []
     assert messages("+!g <- !h. { +!h. }") == []
@@ -371,6 +376,21 @@ def test_annotations_that_act_are_valid_and_at_their_places(text, help_):
 def test_other_words_for_annotations_are_reported(text, help_):
     (found,) = [each for each in warnings(text) if each.code != "loop-without-wait"]
     assert (found.code, found.help) == ("misspelt-annotation", help_)
+
+
+@pytest.mark.parametrize(
+    ("text", "help_"),
+    [
+        ("+!go[sender(S)] <- .print(S).", "did you mean `source(S)`?"),
+        ("-!go[failure_reason(R)] <- .print(R). +!go.", "did you mean `env_failure_reason(R)`?"),
+        ("-!go[error_message(T)] <- .print(T). +!go.", "did you mean `error_msg(T)`?"),
+        ("+!go <- open[artifact(door)].", "did you mean `artifact_name(door)`?"),
+    ],
+)
+def test_other_words_for_annotations_of_events_and_actions_are_reported(text, help_):
+    (found,) = warnings(text)
+    assert (found.code, found.help) == ("misspelt-annotation", help_)
+    assert codes(f"!go[sender(1), failure_reason(2), error_message(3)]. artifact(door). {text}") == []
 
 
 @pytest.mark.parametrize(

@@ -50,6 +50,25 @@ def test_failure_plans_of_goals_that_may_be_posted_are_not_reported(text):
     assert unused(text) == []
 
 
+def test_a_misspelt_plan_beside_a_right_one_is_reported():
+    right = "!start. +!start <- !forward(3). +!forward(N) : N > 3 <- .print(N)."
+    assert unused(f"{right} +!forawrd(N) <- .print(N).") == ["did you mean `+!forward`?"]
+    assert unused(f"{right} +!backward(N) <- .print(N).") == []
+    assert unused(f"{right} +!forawrd(N) <- .print(N). +far <- !forawrd(1).") == []
+
+
+def test_a_fact_that_is_a_goal_is_reported():
+    def facts(text: str) -> list[str | None]:
+        return [each.help for each in check(program(text), KNOWN) if each.code == "missing-mark"]
+
+    assert facts("start.\n+!start <- .print(a).") == ["did you mean `!start`?"]
+    assert facts("go(1). go(2). +!go(N) <- .print(N).") == ["did you mean `!go`?"]
+    assert facts("go(1). +!go(N) : go(N) <- .print(N).") == []
+    assert facts("go(1). +go(N) <- .print(N). +!go(N).") == []
+    assert facts("go(1). !go(2). +!go(N).") == []
+    assert facts("go(1). +!go.") == []
+
+
 def test_goals_that_no_agent_posts_are_noted():
     def noted(*texts: str) -> list[str]:
         programs = [program(text) for text in texts]
@@ -67,12 +86,14 @@ def test_goals_that_no_agent_posts_are_noted():
     [
         ("!start. +!start <- go. +!go <- .print(go).", "did you mean `!go`?"),
         ("+bumped <- go(3). +!go(N) <- .print(N).", "did you mean `!go`?"),
+        ('{ include("$jacaros/a.asl") } +!start <- !use(a); use(b).', "did you mean `!use`?"),
         ("+!start <- wait(3).", "did you mean `.wait`?"),
         ("+!start <- send(bob, tell, ready).", "did you mean `.send`?"),
     ],
 )
 def test_an_action_that_is_a_goal_or_an_internal_action_is_reported(text, help_):
-    assert [each.help for each in missing_marks(program(text), KNOWN)] == [help_]
+    library = {"$jacaros/a.asl": "+!use(N) <- !use(N, []). +!use(N, L) <- !use(N)."}
+    assert [each.help for each in missing_marks(program(text, library), KNOWN)] == [help_]
 
 
 @pytest.mark.parametrize(
