@@ -162,7 +162,7 @@ def _mistakes(program: nodes.Program, known: KnownActions, errors: Sequence[Diag
         warnings += never_selected(program, found, known)
         warnings += loops_without_wait(program, found, known)
         whole = ByKind(program.beliefs, program.goals, program.plans)
-        warnings += [*unused_handlers(whole, known), *facts_for_goals(program, whole)]
+        warnings += [*unused_handlers(whole, known), *facts_for_goals(program)]
     return warnings
 
 

@@ -16,7 +16,7 @@ from jacaros.agents.checks.formulas import labelled
 from jacaros.agents.checks.goals import PRINTING, KnownActions
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic, Span, problem
-from jacaros.agents.language.nodes import ByKind, walk
+from jacaros.agents.language.nodes import ByKind, names_in, walk
 from jacaros.runtime.files.texts import close_matches, did_you_mean
 
 Key = tuple[str, int]
@@ -110,7 +110,9 @@ def unused_handlers(found: ByKind, known: KnownActions) -> Iterator[Diagnostic]:
 def _misspelt_plans(found: ByKind, posts: Posts) -> Iterator[Diagnostic]:
     """Warn of plans for goals that nothing posts whose name is nearly that of a goal with a plan."""
     posted = [step.goal for step in found.of(nodes.Achieve)]
-    known = {_key(goal) for goal in posted if isinstance(goal, nodes.Literal)} & posts.handled
+    heads = [each.literal for each in found.of(nodes.Trigger) if each.kind == "!"]
+    with_plan = {_key(head) for head in heads if isinstance(head, nodes.Literal)}
+    known = {_key(goal) for goal in posted if isinstance(goal, nodes.Literal)} & with_plan
     for trigger in (plan.trigger for plan in found.of(nodes.Plan)):
         literal = trigger.literal
         if (
@@ -141,9 +143,16 @@ def is_open(found: ByKind, known: KnownActions) -> bool:
     """Return whether goals or plans come from elsewhere: a plan for any goal, a computed goal, plans added at run time."""
     return (
         any(isinstance(each.literal, nodes.Variable) and each.kind for each in found.of(nodes.Trigger))
-        or any(isinstance(each.goal, nodes.Variable) for each in found.of(nodes.Achieve))
+        or any(map(_computes_goal, found.of(nodes.Plan)))
         or any(known.of(call).brings_in for call in found.of(nodes.InternalAction))
     )
+
+
+def _computes_goal(plan: nodes.Plan) -> bool:
+    """Return whether a plan posts a goal from elsewhere. An argument of its own goal is in the program that posts that."""
+    steps = ByKind(plan.body, plan.subplans).of(nodes.Achieve)
+    names = {step.goal.name for step in steps if isinstance(step.goal, nodes.Variable)}
+    return bool(names) and not (plan.trigger.kind == "!" and names.issubset(names_in(plan.trigger.literal)))
 
 
 def _meant(wanted: Key, handled: Iterable[Key]) -> list[Key]:
@@ -203,17 +212,33 @@ def with_mark(action: Key, posts: Posts, known: KnownActions) -> str:
     return f".{action[0]}" if internal is not None and internal.takes(action[1]) else ""
 
 
-def facts_for_goals(program: nodes.Program, found: ByKind) -> Iterator[Diagnostic]:
-    """Warn of initial beliefs that nothing reads, if there is a plan for the goal of that name and nothing posts it."""
-    posts = Posts(found)
+def facts_for_goals(program: nodes.Program) -> Iterator[Diagnostic]:
+    """Warn of initial beliefs that nothing reads, if there is a plan for the goal of that name and nothing posts it.
+
+    A plan may post its own goal again.
+    """
     facts: dict[Key, list[nodes.Literal]] = {}
     for belief in program.beliefs:
-        if isinstance(belief, nodes.Literal) and _key(belief) in posts.handled and _is_own(belief):
+        if isinstance(belief, nodes.Literal) and _is_own(belief):
             facts.setdefault(_key(belief), []).append(belief)
-    for key, same in facts.items():
-        if posts.appears_only_as(same):
+    heads = [
+        each.trigger.literal
+        for each in program.plans
+        if (each.trigger.operator, each.trigger.kind) == ("+", "!")
+    ]
+    for key in facts.keys() & {_key(each) for each in heads if isinstance(each, nodes.Literal)}:
+        of_goal = [plan for plan in program.plans if _is_for(plan.trigger, key) and plan.trigger.kind == "!"]
+        others = [plan for plan in program.plans if plan not in of_goal]
+        own = ByKind(*of_goal)
+        repeated = {id(step.goal) for step in own.of(nodes.Achieve)} | {
+            id(each.literal) for each in own.of(nodes.Trigger)
+        }
+        is_read = any(_key(each) == key and id(each) not in repeated for each in own.of(nodes.Literal))
+        if not is_read and Posts(ByKind(program.beliefs, program.goals, tuple(others))).appears_only_as(
+            facts[key]
+        ):
             message = f"nothing reads the belief `{_text(key)}`, and nothing posts the goal `!{_text(key)}`"
-            yield problem("missing-mark", message, same[0].span, did_you_mean([f"!{key[0]}"]))
+            yield problem("missing-mark", message, facts[key][0].span, did_you_mean([f"!{key[0]}"]))
 
 
 def missing_marks(program: nodes.Program, known: KnownActions) -> Iterator[Diagnostic]:

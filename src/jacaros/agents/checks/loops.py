@@ -146,6 +146,25 @@ def _changes(body: nodes.Body) -> bool:
     return any(isinstance(node, nodes.BeliefChange | nodes.Achieve) for node in walk(body))
 
 
+def _taken_away(body: nodes.Body) -> Iterator[nodes.Literal]:
+    """Yield the beliefs that a body deletes and does not add again."""
+    changes = [(each.operator, each.operand) for each in body.steps if isinstance(each, nodes.BeliefChange)]
+    added = {
+        _key("", operand) for sign, operand in changes if "+" in sign and isinstance(operand, nodes.Literal)
+    }
+    for sign, operand in changes:
+        if "+" not in sign and isinstance(operand, nodes.Literal) and _key("", operand) not in added:
+            yield operand
+
+
+def _answers(fact: nodes.Literal, asked: nodes.Literal) -> bool:
+    """Return whether a fact answers a query with variables in place of some of its arguments."""
+    return _key("", fact) == _key("", asked) and all(
+        isinstance(one, nodes.Variable) or one == other
+        for one, other in zip(asked.arguments, fact.arguments, strict=True)
+    )
+
+
 class _Quick:
     """Tells the steps that take no time and do not fail."""
 
@@ -153,24 +172,20 @@ class _Quick:
         self._known = known
         self._plans = _by_event(program.plans)
         self._asked: dict[_Event, bool] = {}
-        facts = {_key("", each) for each in program.beliefs if isinstance(each, nodes.Literal)}
-        changes = ByKind(program.plans).of(nodes.BeliefChange)
-        gone = {
-            _key("", each.operand)
-            for each in changes
-            if each.operator.startswith("-")
-            and "+" not in each.operator
-            and isinstance(each.operand, nodes.Literal)
-        }
-        self._lasting = facts - gone
+        facts = [each for each in program.beliefs if isinstance(each, nodes.Literal)]
+        gone = {_key("", each) for body in ByKind(program.plans).of(nodes.Body) for each in _taken_away(body)}
+        self._lasting = [each for each in facts if _key("", each) not in gone]
 
     def raising(self, plan: nodes.Plan, plans: Mapping[_Event, object]) -> list[nodes.Step]:
         """Return the steps of a plan that raise events with plans and that only quick steps come before."""
         found: list[nodes.Step] = []
+        given = set(names_in(plan.trigger, plan.context))
         for step in plan.body.steps if isinstance(plan.body, nodes.Body) and not plan.subplans else ():
             if _event_of(step) in plans:
                 found.append(step)
-            if not self._is(step):
+            # A test with a value from elsewhere may fail.
+            asks_value = isinstance(step, nodes.Test) and not given.isdisjoint(names_in(step))
+            if asks_value or not self._is(step):
                 break
         return found
 
@@ -187,7 +202,7 @@ class _Quick:
             case nodes.Constraint(nodes.Relation("=", nodes.Variable())):
                 return True
             case nodes.Test(nodes.Literal() as asked):
-                return _key("", asked) in self._lasting and len(names_in(asked)) == len(asked.arguments)
+                return any(_answers(fact, asked) for fact in self._lasting)
             case nodes.If(_, then, otherwise):
                 return self.are(then.steps) and (otherwise is None or self.are(otherwise.steps))
             case nodes.For(_, body):

@@ -40,7 +40,8 @@ def test_a_failure_plan_of_a_goal_that_nothing_posts_is_reported(text, help_):
         "+!begin <- ?place(X); drive(X). -?place(_) <- stop.",
         "+!begin <- .send(bob, achieve, go). -!go <- stop.",
         '+!begin <- .term2string(T, "go"); .print(T). -!go <- stop.',
-        "+!begin(G) <- !G. -!go <- stop.",
+        "+far(G) <- !G. -!go <- stop.",
+        "+!begin(G) <- !G. +far <- !begin(go). -!go <- stop.",
         "+!G <- print(G). -!go <- stop.",
         '+!begin <- .add_plan("+!go"). -!go <- stop.',
         "-!m::go <- stop.",
@@ -53,6 +54,8 @@ def test_failure_plans_of_goals_that_may_be_posted_are_not_reported(text):
 def test_a_misspelt_plan_beside_a_right_one_is_reported():
     right = "!start. +!start <- !forward(3). +!forward(N) : N > 3 <- .print(N)."
     assert unused(f"{right} +!forawrd(N) <- .print(N).") == ["did you mean `+!forward`?"]
+    failing = right.replace("+!forward(N) : N > 3", "-!forward(N)")
+    assert unused(f"{failing} +!forawrd(N) <- .print(N).") == ["did you mean `+!forward`?"]
     assert unused(f"{right} +!backward(N) <- .print(N).") == []
     assert unused(f"{right} +!forawrd(N) <- .print(N). +far <- !forawrd(1).") == []
 
@@ -67,6 +70,8 @@ def test_a_fact_that_is_a_goal_is_reported():
     assert facts("go(1). +go(N) <- .print(N). +!go(N).") == []
     assert facts("go(1). !go(2). +!go(N).") == []
     assert facts("go(1). +!go.") == []
+    assert facts("go(1). +!go(N) <- .print(N); !go(N + 1).") == ["did you mean `!go`?"]
+    assert facts("go(1). +!go(N) <- .print(N). +far <- !go(2).") == []
 
 
 def test_goals_that_no_agent_posts_are_noted():
@@ -76,7 +81,7 @@ def test_goals_that_no_agent_posts_are_noted():
 
     assert noted("!go. +!go. +!rest. +?far(X).", "+!rest(N).") == ["!rest/0", "?far/1", "!rest/1"]
     assert noted("!go. +!go <- .send(bob, achieve, rest).", "+!rest.") == []
-    assert noted("!go. +!go(G) <- !G. +!rest.") == []
+    assert noted("!go. +!go. +far(G) <- !G. +!rest.") == []
     assert noted("+!kqml_received(S, tell, C, I). @t[test] +!t. +!m::g.") == []
     assert list(never_posted([program("+!rest.")], KNOWN, lambda _: False)) == []
 

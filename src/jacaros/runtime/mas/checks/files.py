@@ -345,9 +345,10 @@ class _Checked:
         from jacaros.runtime.mas.checks.observables import observables_of
 
         trees = [program for _, program in programs]
-        types = made_types(self.deployment, trees, find_type)
+        types = made_types(self.deployment, trees, find_type) if programs else None
         if types is None:
-            return [each for tree in trees for each in missing_marks(tree, KnownActions(STANDARD))]
+            known = KnownActions(STANDARD)
+            return [each for _, program in self.programs for each in missing_marks(program, known)]
         if not types or self.deployment.ignored:
             return []
 
