@@ -30,6 +30,7 @@ from jacaros.agents.checks.goals import (
 )
 from jacaros.agents.checks.handlers import facts_for_goals, unused_handlers
 from jacaros.agents.checks.loops import loops_without_wait
+from jacaros.agents.checks.missed_events import missed_events
 from jacaros.agents.checks.unreachable import contexts_never_true, never_selected
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import LEVELS, Diagnostic, SourceFile, Span, problem
@@ -161,6 +162,7 @@ def _mistakes(program: nodes.Program, known: KnownActions, errors: Sequence[Diag
         warnings += goals_without_plan(program, found, known)
         warnings += never_selected(program, found, known)
         warnings += loops_without_wait(program, found, known)
+        warnings += missed_events(program, found, known)
         whole = ByKind(program.beliefs, program.goals, program.plans)
         warnings += [*unused_handlers(whole, known), *facts_for_goals(program)]
     return warnings

@@ -12,7 +12,7 @@ from jacaros.agents.language.nodes import Declaration
 
 STANDARD = {
     ".print": Declaration(),
-    ".wait": Declaration(arity=(1, 3)),
+    ".wait": Declaration(arity=(1, 3), awaits=True),
     ".findall": Declaration(arity=3),
     ".length": Declaration(arity=2),
     ".add_plan": Declaration(arity=(1, 3), brings_in=True, changes_plans=True),
@@ -440,3 +440,33 @@ def test_a_value_that_was_probably_meant_otherwise_is_noted(step, message, help)
 )
 def test_other_values_are_not_noted(step):
     assert warnings(f"+!g <- {step}.") == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "+!go <- +fetched; .wait({+fetched}).",
+        "+!go <- !fetch; .wait({+done(_)}, 500). +!fetch <- -+done(3).",
+        "+!go <- !fetch; .wait({+fetched}). +!fetch <- !lift. +!lift : p <- +fetched. +!lift <- +fetched.",
+        "+!go <- if (p) { +fetched }; .wait({+fetched}). +far : fetched <- .print(a).",
+    ],
+)
+def test_a_wait_for_an_event_that_the_plan_has_caused_is_reported(text):
+    assert codes(text) == ["event-never-happens"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "+!go <- !!fetch; .wait({+fetched}). +!fetch <- +fetched.",
+        "+!go <- .wait({+fetched}); +fetched.",
+        "+!go <- +fetched; .wait({+fetched}). +far <- +fetched.",
+        "+!go <- !fetch; .wait({+fetched}). +far <- !fetch. +!fetch <- +fetched.",
+        "+!go <- +fetched; .send(bob, tell, fetched); .wait({+fetched}).",
+        "+!go <- +fetched; .wait({-fetched}).",
+        "+!go <- +fetched; .wait(fetched).",
+        "+!go <- .wait({+fetched}).",
+    ],
+)
+def test_waits_for_events_that_may_come_are_not_reported(text):
+    assert "event-never-happens" not in codes(text)
