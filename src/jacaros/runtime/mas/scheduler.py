@@ -67,10 +67,14 @@ class Scheduler:
     Attributes:
         paused: whether no agent has a turn.
         turn_ended: called with an agent that has used up its turn, if something may pause in the middle of a turn; or None.
+        busy_for_long: called with an agent after each `TURNS_UNTIL_LOOK` turns in which it always had more to do, and
+            whether it is the first time since it had not.
     """
 
     QUANTUM = 50
     """Maximum number of reasoning cycles of one agent in one turn: enough to make switching between agents cheap."""
+    TURNS_UNTIL_LOOK = 10_000
+    """Turns, of mostly 50 cycles, after which a busy agent is looked at."""
     CYCLES_PER_ROUND = 1000
     """On the virtual clock: cycles of all agents between two polls of timers, sockets and callbacks of the event loop."""
     SECONDS_PER_ROUND = 0.001
@@ -102,6 +106,8 @@ class Scheduler:
         self._context = run_context()
         self.paused = False
         self.turn_ended: Callable[[Runnable], None] | None = None
+        self.busy_for_long: Callable[[Runnable, bool], None] = lambda _agent, _is_first: None
+        self._busy_turns: dict[Runnable, int] = {}
         self._interrupted: _Interrupted | None = None
 
     @property
@@ -241,7 +247,7 @@ class Scheduler:
                 cycles += quantum
                 self._requeue(agent)
             else:
-                cycles += 1
+                cycles += self._rests(agent)
         if self.paused and self._interrupted is None:
             self._interrupted = _Interrupted(None, False, 0, cycles)
         return cycles
@@ -260,7 +266,7 @@ class Scheduler:
         if more:
             self._requeue(agent)
         turn_ended(agent)
-        return cycles + (self.QUANTUM if more else 1)
+        return cycles + (self.QUANTUM if more else self._rests(agent))
 
     def _finish_turn(self, interrupted: _Interrupted) -> int:
         """Give an agent the rest of its turn. Return the cycles of the round so far."""
@@ -272,9 +278,19 @@ class Scheduler:
         return self._counted_turn(self.turn_ended, agent, fuel, cycles)
 
     def _requeue(self, agent: Runnable) -> None:
+        """Give an agent that has more to do another turn."""
+        turns = self._busy_turns.get(agent, 0) + 1
+        self._busy_turns[agent] = turns
+        if turns % self.TURNS_UNTIL_LOOK == 0:
+            self.busy_for_long(agent, turns == self.TURNS_UNTIL_LOOK)
         if not agent.queued and not self._stopped:
             agent.queued = True
             self._queue.append(agent)
+
+    def _rests(self, agent: Runnable) -> int:
+        """Note that an agent has nothing more to do. Return the cycles that its turn counts."""
+        self._busy_turns.pop(agent, None)
+        return 1
 
     def _real_turns(self) -> int:
         """Give turns until it is time to poll. Return the number of cycles."""
@@ -289,7 +305,7 @@ class Scheduler:
                 cycles += quantum
                 self._requeue(agent)
             else:
-                cycles += 1
+                cycles += self._rests(agent)
             if self.turn_ended is not None:
                 self.turn_ended(agent)
             if cycles >= look or self._poll_soon:

@@ -22,6 +22,7 @@ from jacaros.runtime.mas.console import HeardConsole, RunConsole
 from jacaros.runtime.mas.deployment import AgentSpec, Deployment, has_own_artifacts
 from jacaros.runtime.mas.directory import NAME as DIRECTORY_NAME
 from jacaros.runtime.mas.directory import Directory, Mailboxes, ServiceDirectory
+from jacaros.runtime.mas.endless_loops import EndlessLoops
 from jacaros.runtime.mas.options import RunOptions
 from jacaros.runtime.mas.ros_graph import RosGraph
 from jacaros.runtime.mas.scheduler import AgentTimer, Idleness, Scheduler
@@ -103,6 +104,7 @@ class System:
         self.activity = Activity()
         self.idleness = Idleness(self.activity)
         self.scheduler = Scheduler(clock, self.idleness.look, self.fail, idle_work=self._compile_ahead)
+        self.scheduler.busy_for_long = EndlessLoops(lambda text: self.console.log(text, "warning")).look
         self.idleness.turns = self.scheduler
         self._run_environment: RunEnvironment | None = None
         self.tracer: Tracer | None = None
