@@ -7,7 +7,7 @@ const SHADES = 4;  // of strips
 const LETTER = 6.03;  // pixels of a letter of the font
 const FONT = "10px ui-monospace, Menlo, Consolas, 'DejaVu Sans Mono', monospace";
 const COLOURS = ["accent", "accent", "warn", "muted", "good", "bad", "bad", "warn"];  // by kind
-const SOLID = [0.55, 0.3, 0.35, 0.15, 0.45, 0.6, 0.9, 0.8];  // how opaque a kind is
+const SOLID = [0.55, 0.3, 0.35, 0.2, 0.45, 0.6, 0.9, 0.8];  // how opaque a kind is
 
 /** Draws lanes on a canvas: only what is in view, and nothing that is narrower than three pixels by itself. */
 export class LanesDrawing {
@@ -78,7 +78,7 @@ export class LanesDrawing {
     if (kind === KIND.waits) pen.fillRect(from, y + height * 0.25, width, height * 0.5);
     else pen.fillRect(from, y, width, height);
     pen.globalAlpha = 1;
-    if (kind === KIND.suspended && width > 3) {
+    if (kind === KIND.suspended && width > 12) {
       pen.setLineDash([3, 2]);
       pen.strokeStyle = pen.fillStyle;
       pen.lineWidth = 1;

@@ -56,7 +56,8 @@ export class TimeView {
     for (const t of ticks) {
       const x = Math.round(this.axis.x(t));
       pen.fillRect(x, RULER - 4, 1, 4);
-      pen.fillText(isFine ? `${t.toFixed(2)} s` : tickText(t, ticks), Math.min(x, width - 18), RULER - 6);
+      const text = isFine ? `${t.toFixed(2)} s` : tickText(t, ticks);
+      pen.fillText(text, Math.min(x, width - 2 - pen.measureText(text).width / 2), RULER - 6);
     }
   }
 
