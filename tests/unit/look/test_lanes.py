@@ -46,6 +46,25 @@ def test_merged_bars_leave_nothing_out_and_have_the_sums_of_their_parts(tmp_path
     assert (newest, is_open) == (4999, True)
 
 
+MILLION = """(() => {
+  const bars = new Bars(false, 2e6), counts = [];
+  for (let n = 0; n < 1e6; n++) { bars.begin(n, n % 4, n); bars.end(n + 0.5); }
+  for (const seconds of [1e6, 1e5, 1e4, 1e3, 100]) {
+    let calls = 0;
+    bars.each(4e5, 4e5 + seconds, 3 * seconds / 1000, () => { calls += 1; });
+    counts.push(calls);
+  }
+  return counts;
+})()"""
+
+
+@needs_chromium
+def test_a_million_bars_are_drawn_with_as_many_strips_as_there_is_room_for(tmp_path: Path) -> None:
+    counts = evaluated(tmp_path, "lanes_bars", "Bars", MILLION)
+    assert all(count <= 1000 for count in counts), "on 1,000 pixels"
+    assert counts[-1] == 101, "each bar of a short range"
+
+
 def goal(t: float, goal: str, state: str, number: int, intention: int = 1, **more: Any) -> list[Any]:
     return [
         t,
@@ -213,6 +232,12 @@ async def test_the_arrow_keys_move_from_bar_to_bar() -> None:
             if key:
                 await page.press(key)
             assert (await page.evaluate("document.activeElement.textContent")).startswith(words)
+        picture = "document.querySelector('#lanes canvas').toDataURL()"
+        folded = await page.evaluate(picture)
+        await page.press("o")
+        await page.wait_for(f"{picture} !== {folded!r}")
+        await page.press("o")
+        await page.wait_for(f"{picture} === {folded!r}")
         await page.press("ArrowDown")
         await page.press("Enter")
         await page.wait_for(f"{NOW} === '0:01.0'")

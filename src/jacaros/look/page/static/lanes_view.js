@@ -167,6 +167,13 @@ export class LanesView {
     this.context.time.notify();
   }
 
+  /** Show the goals of the agent of a bar below its intentions, or hide them; returns the bar. */
+  unfold(found) {
+    const what = found.row.bars.whats[found.index], { agent } = what.root ?? what;
+    if (this.lanes.agents.has(agent)) this.toggle(agent);
+    return found;
+  }
+
   /** Go to the moment `t`, and show why there is this bar. */
   choose({ row, index }, t) {
     const { bars } = row, what = bars.whats[index].root ?? bars.whats[index], { agent, intention, artifact, cause, id } = what;
@@ -222,6 +229,7 @@ export class LanesView {
     const to = {
       ArrowUp: () => this.nearest(n - 1, -1, t), ArrowDown: () => this.nearest(n + 1, 1, t),
       ArrowLeft: () => ({ row, index: Math.max(0, index - 1) }), ArrowRight: () => ({ row, index: Math.min(row.bars.count - 1, index + 1) }),
+      o: () => this.unfold(current),
     }[event.key]?.();
     if (to === undefined) return;
     event.preventDefault();
