@@ -53,7 +53,7 @@ export class CurveDrawing {
   curve({ series, source, scale: factor }, scale, color, dashes = []) {
     const { axis } = this, points = series.points(axis.from, axis.to, axis.grain, source.isStep), { length } = points, line = [];
     // A line that is one pixel wide and on whole pixels is drawn ten times as fast.
-    const isDense = length > axis.width, x = (t) => (isDense ? Math.round(axis.x(t)) + 0.5 : axis.x(t));
+    const isDense = length > 2 * axis.width, x = (t) => (isDense ? Math.round(axis.x(t)) + 0.5 : axis.x(t));
     for (let i = 0; i < length; i += 2) {
       // The value of a step holds until the next one.
       if (source.isStep && i) line.push(x(points[i]), line.at(-1));
