@@ -116,7 +116,8 @@ async def test_curves_are_chosen_where_numbers_are_shown_and_remembered() -> Non
 
 
 DRAGGED = """(() => {
-  const dataTransfer = new DataTransfer(), drag = (target, kind) => target.dispatchEvent(new DragEvent(kind, { dataTransfer, bubbles: true }));
+  const dataTransfer = new DataTransfer();
+  const drag = (target, kind) => target.dispatchEvent(new DragEvent(kind, { dataTransfer, bubbles: true }));
   drag(document.querySelector('.robot'), 'dragstart');
   drag(document.querySelector('#curves'), 'drop');
 })()"""

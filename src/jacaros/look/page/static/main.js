@@ -119,7 +119,7 @@ export function startPage({ live, commands }) {
   return page;
 }
 
-/** Parameters behind the # of the address: `t`, seconds; `theme`, light or dark. */
+/** Parameters behind the # of the address: `t`, seconds; `theme`, light or dark; `curves`, keys of sources (`CurveChoice`). */
 export function fragment() { return new URLSearchParams(location.hash.slice(1)); }
 
 /** Draws the views, at most once for each animation frame, and only when something has changed. */
