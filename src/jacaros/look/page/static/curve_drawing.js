@@ -1,7 +1,9 @@
 import { themeColor } from "./elements.js";
 
 const DASHES = [5, 4];
-const MARKS = { failure: ["▲", "bad"], task: ["●", "accent"], docked: ["■", "dock"], intervention: ["◆", "person"], pause: ["‖", "muted"] };
+const MARKS = {
+  failure: ["▲", "bad"], handled: ["△", "bad"], task: ["●", "accent"], docked: ["■", "dock"], intervention: ["◆", "person"], pause: ["‖", "muted"],
+};
 
 /** Draws curves, their axes and thresholds, and marks, with a pen on a canvas. */
 export class CurveDrawing {
