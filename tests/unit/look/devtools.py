@@ -199,9 +199,9 @@ class Page:
         features = [{"name": "prefers-color-scheme", "value": scheme}]
         await self.call("Emulation.setEmulatedMedia", features=features)
 
-    async def screenshot(self) -> bytes:
-        """Return what is seen, as PNG."""
-        answer = await self.call("Page.captureScreenshot", format="png")
+    async def screenshot(self, clip: dict[str, float] | None = None) -> bytes:
+        """Return what is seen, or a part of it, as PNG."""
+        answer = await self.call("Page.captureScreenshot", format="png", **({"clip": clip} if clip else {}))
         return base64.b64decode(answer["data"])
 
     async def close(self) -> None:

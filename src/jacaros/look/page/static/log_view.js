@@ -23,13 +23,21 @@ export class LogView {
   show(t) {
     const count = this.log.countAt(t);
     if (count === this.count) return;
-    const atEnd = this.list.scrollTop + this.list.clientHeight >= this.list.scrollHeight - 30;
+    const atEnd = this.list.scrollTop >= (this.end ?? 0) - 30;
     const first = Math.max(0, count - PAGE * this.pages);
     if (count > this.count && this.count >= 0 && first === this.first) this.append(this.count, count);
     else this.fill(first, count);
     this.count = count;
     this.none.hidden = count > 0;
-    if (atEnd || this.isReplaced) this.list.scrollTop = this.list.scrollHeight;
+    if (atEnd || this.isReplaced) this.scrollToEnd();
+  }
+
+  /** Show the last line; of one that is longer than the list, its beginning. */
+  scrollToEnd() {
+    const { list } = this;
+    list.scrollTop = list.scrollHeight;
+    list.scrollTop -= Math.max(0, (list.lastElementChild?.offsetHeight ?? 0) - list.clientHeight);
+    this.end = list.scrollTop;
   }
 
   fill(first, count) {
