@@ -175,11 +175,11 @@ def _time(t: float) -> dict[str, int]:
 
 def layout(recording: Recording, topics: Mapping[str, str]) -> dict[str, Any]:
     """Return a layout for the topics of a file: map, output, lanes, batteries with their limits, and positions."""
-    known = all_series(recording)
-    charges = [each for each in known if (each.source, each.name) == ("belief", "battery")]
-    compared = dict(
-        limit for each in charges for limit in limits(recording, each, known) if not limit[1].owner
-    )
+    beliefs = [
+        each for each in recording.events if each[1] == "belief" and each[2]["belief"].startswith("battery(")
+    ]
+    charges = all_series(Recording(events=beliefs))
+    compared = dict(limit for each in charges for limit in limits(recording, each, ()))
     lanes = [each for each, schema in topics.items() if schema == "jacaros.Lane"][:_MOST_LANES]
     robots = [each for each, schema in topics.items() if schema == "jacaros.Robot"]
     batteries = [f"{_topic('beliefs', each.owner, each.name)}.arg{each.field}" for each in charges]
