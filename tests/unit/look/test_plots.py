@@ -118,6 +118,14 @@ def test_a_plot_marks_failures_and_tells_handled_ones_apart() -> None:
     assert "!go failed, then handled" in [each.text for each in svg.iter(f"{SVG}text")]
 
 
+def test_texts_of_a_recording_cannot_break_a_plot() -> None:
+    evil = "\x1b[2J</text><script>alert(1)</script>&\udcff"
+    svg = drawn(*named(all_series(RECORDING), "r2.x"), failed=[Failure(0.5, evil, False)])
+    assert not list(svg.iter(f"{SVG}script"))
+    assert max(len(each.text or "") for each in svg.iter(f"{SVG}text")) < 60
+    assert any("<script>" in (each.text or "") for each in svg.iter(f"{SVG}text"))
+
+
 def test_a_long_curve_has_few_points_and_keeps_its_peaks() -> None:
     series = Series("belief", "guard", "level", "1", [(float(t), t % 7.0) for t in range(100_000)])
     series.points[50_000] = (50_000.0, 99.0)

@@ -99,7 +99,7 @@ def _of_events(recording: Recording) -> Iterator[Sample]:
             values = data["values"] and [_number(each) for each in data["values"]]
             yield Sample(t, "property", data["artifact"].rpartition("/")[2], data["name"], values)
         elif kind == "laser":
-            nearest = min((each for each in data["ranges"] if each), default=None)
+            nearest = min(filter(None, data["ranges"]), default=None)
             yield Sample(t, "laser", data["robot"], data["robot"], [nearest and nearest / 100.0])
 
 

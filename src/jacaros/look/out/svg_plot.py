@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from jacaros.look.out.series import Series
+from jacaros.runtime.files.texts import printable
 
 _STYLE = """
   text{font:12px system-ui,sans-serif;fill:#222} .grid{stroke:#e3e3e3} .axis{stroke:#222;fill:none}
@@ -25,6 +26,8 @@ _WIDTH, _LEFT, _RIGHT = 720, 64, 16
 _HEIGHT, _HEAD, _FOOT = 140, 30, 46
 _GLYPH = 6.6
 """Width of a character, about."""
+_MOST_SIGNS = 40
+"""Maximum length of a goal in the legend."""
 
 
 class Failure(NamedTuple):
@@ -86,7 +89,7 @@ def plot_svg(
         bottom = legend[-1].y + 7 + _HEIGHT
         parts += _panel(sheet, panel, legend, bottom)
     height = bottom + _FOOT
-    title = html.escape(title)
+    title = _escaped(title)
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {_WIDTH} {height}" width="{_WIDTH}" height="{height}" '
         f'role="img" aria-label="{title}">\n<title>{title}</title>\n<style>{_STYLE}</style>\n'
@@ -161,7 +164,7 @@ def _panel(sheet: _Sheet, panel: Panel, legend: Sequence[_Entry], bottom: int) -
         yield _line("grid", scale.y(tick))
         yield _text(f"{tick:.12g}", _LEFT - 6, scale.y(tick) + 4, "end")
     if panel.units:
-        units, middle = html.escape(panel.units), bottom - _HEIGHT // 2
+        units, middle = _escaped(panel.units), bottom - _HEIGHT // 2
         yield f'<text transform="translate(14 {middle}) rotate(-90)" text-anchor="middle">{units}</text>'
     for x, y, label, pen, series in legend:
         yield f'<path class="curve" {pen} d="M{x} {y - 4}h24"/>{_text(label, x + 29, y)}'
@@ -178,7 +181,12 @@ def _line(kind: str, y: float) -> str:
 
 def _text(text: str, x: float, y: float, anchor: str = "start", kind: str = "") -> str:
     named = f' class="{kind}"' if kind else ""
-    return f'<text{named} x="{x:g}" y="{y:g}" text-anchor="{anchor}">{html.escape(text)}</text>'
+    return f'<text{named} x="{x:g}" y="{y:g}" text-anchor="{anchor}">{_escaped(text)}</text>'
+
+
+def _escaped(text: str) -> str:
+    """Return a text for XML, which control characters would break."""
+    return html.escape(printable(text))
 
 
 # ---- curves
@@ -264,4 +272,5 @@ def _counted(failed: Sequence[Failure]) -> str:
     names = [each.goal for each in failed]
     if len(set(names)) != 1:
         return f"{len(names)} goals"
-    return names[0] if len(names) == 1 else f"{len(names)} × {names[0]}"
+    name = names[0] if len(names[0]) <= _MOST_SIGNS else f"{names[0][: _MOST_SIGNS - 1]}…"
+    return name if len(names) == 1 else f"{len(names)} × {name}"
