@@ -27,6 +27,7 @@ OF_FILES = {
         "unknown-property",
         "unknown-resource",
         "unreadable-file",
+        "unbound-argument",
         "unfocused-artifact",
     ),
     *("wrong-mapping", "wrong-world", "wrong-project"),

@@ -181,6 +181,25 @@ def test_an_operation_of_a_shipped_mapping_is_known_by_its_file(folder: Path) ->
     assert check(folder, '!go.\n+!go <- makeArtifact("c", "Counter"); dock_at(home).', "") == []
 
 
+def test_inputs_of_operations_without_a_value_are_reported(folder: Path) -> None:
+    program = "!go.\n+!go <- inc(N); inc(_); M = 3; inc(M); look(X); inc(X).\n+!add(N) <- inc(N).\n!add(3)."
+    (folder / "artifacts.py").write_text(f"{ARTIFACTS}\n{LOOKING}", encoding="utf-8")
+    project = PROJECT.replace("artifact c", "artifact l: Looking() artifact c")
+    assert [(each.message, each.code) for each in check(folder, program, project)] == [
+        ("variable `N` occurs only once in this plan", "singleton-variable"),
+        ("`N` has no value here: `inc/1` needs one for `by`", "unbound-argument"),
+        ("`_` has no value here: `inc/1` needs one for `by`", "unbound-argument"),
+    ]
+
+
+LOOKING = """
+class Looking(Artifact):
+    @operation
+    def look(self, found: Out):
+        found.set(3)
+"""
+
+
 def test_a_mapping_file_that_a_goal_names_is_checked(folder: Path) -> None:
     (folder / "robot.yaml").write_text(
         "properties:\n  pose:\n    topic: odom\n    type: nav_msgs/msg/Odometry\n    rat: 2\n",

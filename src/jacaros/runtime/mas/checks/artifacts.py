@@ -28,6 +28,7 @@ from jacaros.artifacts.env.environment import Environment
 from jacaros.artifacts.env.errors import UnknownArtifactType
 from jacaros.runtime.clock import VirtualClock
 from jacaros.runtime.files.texts import close_matches, did_you_mean
+from jacaros.runtime.mas.checks.arguments import unbound_arguments
 from jacaros.runtime.mas.deployment import AgentSpec, Deployment
 
 if TYPE_CHECKING:
@@ -81,6 +82,8 @@ def _unknown_operations(
     offered = _Offered(types)
     for agent, program in programs:
         posts = Posts(ByKind(*clauses_of(program)))
+        own = [] if agent.agent_class else [plan for plan in program.plans if not _is_of_library(plan)]
+        yield from unbound_arguments(own, types)
         for node in () if agent.agent_class else walk(*clauses_of(program)):
             if isinstance(node, nodes.ExternalAction) and isinstance(node.action, nodes.Literal):
                 yield from offered.check(node.action, posts)
