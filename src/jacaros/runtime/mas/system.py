@@ -23,6 +23,7 @@ from jacaros.runtime.mas.deployment import AgentSpec, Deployment, has_own_artifa
 from jacaros.runtime.mas.directory import NAME as DIRECTORY_NAME
 from jacaros.runtime.mas.directory import Directory, Mailboxes, ServiceDirectory
 from jacaros.runtime.mas.endless_loops import EndlessLoops
+from jacaros.runtime.mas.never_met import never_met
 from jacaros.runtime.mas.options import RunOptions
 from jacaros.runtime.mas.ros_graph import RosGraph
 from jacaros.runtime.mas.scheduler import AgentTimer, Idleness, Scheduler
@@ -345,6 +346,7 @@ class System:
             exit_code = 1
             goals = "1 goal was" if self.lost_goals == 1 else f"{self.lost_goals} goals were"
             self.console.log(f"error: {goals} lost (--fail-on-lost-goal)", "error")
+        self._tell_what_was_never_met()
         self.ros.ending()
         self.exit_code = exit_code
         self.scheduler.stop()
@@ -357,6 +359,15 @@ class System:
             self._history.run_ended(exit_code)
         if self._ended is not None and not self._ended.done():
             self._ended.set_result(exit_code)
+
+    def _tell_what_was_never_met(self) -> None:
+        for host in self.directory:
+            try:
+                lines = [] if host.mind is None else list(never_met(host.mind))
+            except Exception:
+                continue  # a message in a log must never make the run fail
+            for line in lines:
+                self.console.log(f"[{host.name}] warning: {line}", "warning")
 
     def when_ended(self, callback: Callable[[int], None]) -> None:
         """Call *callback* with the exit code soon after the end of the run."""

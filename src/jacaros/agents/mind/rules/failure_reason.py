@@ -543,12 +543,12 @@ def note_goals(
     reason.goals = _shown(stack)
     unplanned = reason.place.unplanned
     reason.candidates = (
-        _unanswered(agent, reason.place) if unplanned is None else _candidates(agent, *unplanned)
+        unanswered(agent, reason.place) if unplanned is None else _candidates(agent, *unplanned)
     )
     return stack
 
 
-def _unanswered(agent: Circumstance, place: Place) -> tuple[str, ...]:
+def unanswered(agent: Circumstance, place: Place) -> tuple[str, ...]:
     """Return a line that says why no belief answers the test of a step, or why what a `.wait` waits for did not come."""
     step = None if place.info is None else place.info.node
     formula = step.formula if isinstance(step, nodes.Test | nodes.Constraint) else None
