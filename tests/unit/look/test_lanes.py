@@ -152,6 +152,7 @@ def test_a_failure_that_a_plan_handles_is_not_a_lost_goal(tmp_path: Path) -> Non
 def test_operations_and_owners_of_resources_have_bars(tmp_path: Path) -> None:
     operation = {"artifact": "/main/wheels", "operation": "go(1)", "agent": "bob", "cause": 3}
     records = [
+        [0.0, "resource", {"resource": "r2/wheels", "holder": "[ann] !go"}],
         [0.0, "resource", {"resource": "r1/wheels", "holder": "[bob] !go"}],
         [1.0, "operation", {**operation, "id": 7, "state": "began"}],
         [2.0, "operation", {**operation, "id": 8, "state": "began"}],
@@ -162,7 +163,8 @@ def test_operations_and_owners_of_resources_have_bars(tmp_path: Path) -> None:
     rows, owner, later = lanes(
         tmp_path,
         records,
-        '[lanes.artifacts.get("/main/wheels").rows.map(shown), lanes.owner("wheels", 4), lanes.owner("wheels", 6)]',
+        '[lanes.artifacts.get("/main/wheels").rows.map(shown), lanes.owner("wheels", 4, "bob"), '
+        'lanes.owner("wheels", 6, "bob")]',
     )
     assert rows == [[[1, 3, DONE]], [[2, 4, FAILED]]]
     assert (owner, later) == ("[bob] !go", "")

@@ -22,13 +22,11 @@ export class Lanes {
 
   agent(name) { return known(this.agents, name, () => new AgentLane(name)); }
 
-  /** Who has a resource at `t`, in words; "" for nobody. */
-  owner(resource, t) {
-    for (const { name, bars } of this.resources.values()) {
-      const index = name.split("/").at(-1) === resource ? bars.at(t, 0) : -1;
-      if (index >= 0) return bars.whats[index].holder;
-    }
-    return "";
+  /** Who has a resource at `t`, in words; "" for nobody. Of robots with the same resource it is that of the one which `agent` uses. */
+  owner(resource, t, agent) {
+    const found = [...this.resources.values()].filter(({ name }) => name.split("/").at(-1) === resource);
+    const { bars } = found.find((each) => each.bars.whats.some((what) => what.agent === agent)) ?? found[0] ?? {}, index = bars?.at(t, 0) ?? -1;
+    return index < 0 ? "" : bars.whats[index].holder;
   }
 }
 

@@ -15,18 +15,18 @@ export function barLines({ bars, sort }, first, end, index, { minds, lanes }) {
   if (end - first > 1) return [`${end - first} ${sort === "states" ? "states of intentions" : sort}`, span(from, to)];
   if (sort === "resources") return [`${what.resource} is held by ${what.holder}`, span(from, to)];
   if (sort === "states") return [title(what.root), `${STATES[bars.kinds[first]]}${reason(what.words, bars.kinds[first])} ${span(from, to)}`,
-    ...owner(what.words, lanes, from), ...outcome(what.root)];
+    ...owner(what, lanes, to === Infinity ? from + 1 : (from + to) / 2), ...outcome(what.root)];
   if (sort === "goals") return [title(what), ...outcome(what)];
   return [`${what.operation} of ${shortName(what.artifact)}`, `${what.agent ? `by ${what.agent} ` : ""}${span(from, to)}`, ...(what.outcome === "failed" ? [`failed: ${what.why}`] : [])];
 }
 
 function title({ agent, goal, intention }) { return `${agent}: ${goal}, intention ${intention}`; }
 
-function reason(words, kind) { return words ? `${kind === KIND.suspended ? ":" : " for"} ${words.replace(/^the action /, "")}` : ""; }
+function reason(words, kind) { return words ? `${kind === KIND.waits ? " for" : ":"} ${words.replace(/^the action /, "")}` : ""; }
 
 /** Who has the resource that an intention waits for, or was suspended for. */
-function owner(words, lanes, t) {
-  const resource = /^(?:preempted\((\w+)\)|the resource (\w+))/.exec(words ?? ""), holder = resource && lanes.owner(resource[1] ?? resource[2], t + 0.05);
+function owner({ words, root }, lanes, t) {
+  const resource = /^(?:preempted\((\w+)\)|the resource (\w+))/.exec(words ?? ""), holder = resource && lanes.owner(resource[1] ?? resource[2], t, root.agent);
   return holder ? [`held by ${holder}`] : [];
 }
 
