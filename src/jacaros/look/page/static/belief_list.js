@@ -84,11 +84,12 @@ export class BeliefList {
   }
 
   choose(mind, { belief, cause, intention, file, line, since }) {
-    if (cause) showWhy(this.context, { agent: mind.name, cause });
-    else if (file) {
-      const step = { agent: mind.name, intention, file, line, t: since, what: `which changed ${rounded(belief.replace(ANNOTATION, ""))}` };
-      showWhy(this.context, { agent: mind.name, file, line, cause: this.context.causes.ofStep(step, (id) => mind.plan(id)) });
-    } else this.context.selection.choose({ agent: mind.name });
+    const agent = mind.name, what = `which changed ${rounded(belief.replace(ANNOTATION, ""))}`;
+    if (file) {
+      const id = this.context.causes.ofStep({ agent, intention, file, line, t: since, what, parent: cause ?? 0 });
+      showWhy(this.context, { agent, file, line, cause: id });
+    } else if (cause) showWhy(this.context, { agent, cause });
+    else this.context.selection.choose({ agent });
   }
 }
 

@@ -67,12 +67,10 @@ export class Causes {
     link.beliefs = [...(link.beliefs ?? []).slice(-7), { t, agent, op, belief }];
   }
 
-  /** The id of the link of a step that only changed a belief, which no record has; `plan` finds plans by their ids. */
-  ofStep(step, plan) {
-    const { agent, intention, file, line, t } = step, id = `${agent} ${file}:${line} ${t}`;
-    const covers = ({ chosen }) => { const { file: of, line: first, end } = plan(chosen) ?? {}; return of === file && first <= line && line <= (end ?? first); };
-    const fits = (link) => link.kind === "event" && link.agent === agent && (link.intention ?? intention) === intention && covers(link);
-    if (!this.links.has(id)) this.links.set(id, { ...step, id, kind: "act", parent: this.last(t, 1, fits)[0]?.id ?? 0 });
+  /** The id of the link of a step that only changed a belief, which no record has; `parent` is the event of its plan. */
+  ofStep(step) {
+    const id = `${step.agent} ${step.file}:${step.line} ${step.t}`;
+    if (!this.links.has(id)) this.links.set(id, { ...step, id, kind: "act" });
     return id;
   }
 
