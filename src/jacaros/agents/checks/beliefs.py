@@ -10,7 +10,7 @@
 (True, False)
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import pi
 from typing import Final
@@ -23,6 +23,7 @@ from jacaros.agents.checks.flow import (
     Value,
     is_own,
     key_of,
+    of_size,
     place_of,
     value_of,
     variables_of,
@@ -84,22 +85,15 @@ def mismatches(flow: ProgramFlow, adders: Mapping[str, Sequence[Adder]]) -> Iter
         flow: a program.
         adders: all that can give its agent beliefs, by name.
     """
-    for reader in flow.readers:
-        name, size = reader.key
-        if is_own(reader.literal):
-            same = [each for each in adders.get(name, ()) if each.size in (None, size)]
-            yield from _mismatch(reader, same)
+    for reader in filter(lambda each: is_own(each.literal), flow.readers):
+        yield from _mismatch(reader, of_size(adders, reader.key))
 
 
 def comparisons(flow: ProgramFlow, adders: Mapping[str, Sequence[Adder]]) -> Iterator[Diagnostic]:
     """Return warnings about values of beliefs that are compared with other kinds, or numbers in other units."""
-    for clause in _clauses(flow):
+    clauses = {id(each.clause): each.clause for each in flow.readers if is_own(each.literal)}
+    for clause in clauses.values():
         yield from _comparisons(clause, variables_of(clause, adders))
-
-
-def _clauses(flow: ProgramFlow) -> Iterable[nodes.Node]:
-    """Return the program's own plans, rules and goals that read beliefs."""
-    return {id(each.clause): each.clause for each in flow.readers if is_own(each.literal)}.values()
 
 
 def unmet_goals(program: nodes.Program, adders: Mapping[str, Sequence[Adder]]) -> Iterator[Diagnostic]:
@@ -141,9 +135,7 @@ def _unmet(
         if isinstance(part, nodes.Literal) and variable in part.arguments:
             filled = tuple([argument if each == variable else each for each in part.arguments])
             reader = Reader("condition", nodes.replace(part, arguments=filled), plan)
-            name, size = reader.key
-            same = [each for each in adders.get(name, ()) if each.size in (None, size)]
-            return next(_mismatch(reader, same), None)
+            return next(_mismatch(reader, of_size(adders, reader.key)), None)
     return None
 
 
@@ -225,10 +217,9 @@ def _help(literal: nodes.Literal, same: Sequence[Adder], place: int) -> str:
         return f"begin variables with a capital letter: `{_text(_with_variables(literal, same))}`"
     options = list(dict.fromkeys(option for each in given for option in each.options))
     near = close_matches(_text(wanted), options) or options[:_MOST_OPTIONS]
-    before, after = (
-        list(map(_text, part)) for part in (literal.arguments[:place], literal.arguments[place + 1 :])
-    )
-    return did_you_mean(f"{literal.functor}({', '.join([*before, option, *after])})" for option in near)
+    texts = list(map(_text, literal.arguments))
+    lists = (", ".join([*texts[:place], option, *texts[place + 1 :]]) for option in near)
+    return did_you_mean(f"{literal.functor}({each})" for each in lists)
 
 
 def _text(node: nodes.Node) -> str:
@@ -261,6 +252,8 @@ def _with_variables(literal: nodes.Literal, same: Sequence[Adder]) -> nodes.Lite
 _FACTORS: Final = {
     "radians": ("angle", 1.0),
     "degrees": ("angle", pi / 180),
+    "radians per second": ("turn rate", 1.0),
+    "degrees per second": ("turn rate", pi / 180),
     "metres": ("length", 1.0),
     "centimetres": ("length", 0.01),
     "millimetres": ("length", 0.001),
@@ -288,7 +281,7 @@ def _comparisons(clause: nodes.Node, variables: Mapping[str, Value]) -> Iterator
             elif isinstance(other, nodes.Number) and (unit := _unit_of(other.value, value)):
                 name, number = format_term(variable), format_term(other)
                 message = f"`{name}` is in {_named(value.unit)}, but `{number}` is in {_named(unit)}"
-                help = f"write `{_shown(converted(other.value, unit, value.unit))}`"
+                help = f"write `{other.value * _factor(unit, value.unit):.6g}`"
                 yield problem(UNIT, message, relation.span, help)
 
 
@@ -309,8 +302,8 @@ def _unit_of(number: float, value: Value) -> str:
             return "0 to 1"
         case "0 to 1" if number > 1:
             return "percent"
-        case "radians" if abs(number) >= _TURN:
-            return "degrees"
+        case "radians" | "radians per second" if abs(number) >= _TURN:
+            return value.unit.replace("radians", "degrees")
         case "degrees" if not float(number).is_integer() and _is_part_of_pi(number):
             return "radians"
     return ""
@@ -321,23 +314,12 @@ def _is_part_of_pi(number: float) -> bool:
     return round(eighths) != 0 and abs(eighths - round(eighths)) < 0.005
 
 
-def converted(number: float, unit: str, wanted: str) -> float:
-    """Return a number in another unit of the same kind."""
-    return number * _FACTORS[unit][1] / _FACTORS[wanted][1]
-
-
-def _shown(number: float) -> str:
-    return f"{number:.6g}"
-
-
 def _named(unit: str) -> str:
     return "the range 0 to 1" if unit == "0 to 1" else unit
 
 
 def mixed_units(
-    flow: ProgramFlow,
-    adders: Mapping[str, Sequence[Adder]],
-    parameters: Mapping[tuple[str, int], Sequence[str]],
+    flow: ProgramFlow, adders: Mapping[str, Sequence[Adder]], parameters: Mapping[Key, Sequence[str]]
 ) -> Iterator[Diagnostic]:
     """Return warnings about values that are passed to an operation in another unit than it expects.
 
@@ -346,35 +328,26 @@ def mixed_units(
         adders: all that can give its agent beliefs, by name.
         parameters: the units of the parameters of operations; empty ones are not known.
     """
-    for action in flow.actions:
-        yield from _turns(action, parameters.get(key_of(action), ()))
-    for clause in _clauses(flow) if parameters else ():
-        variables = variables_of(clause, adders)
-        for step in nodes_in(nodes.ExternalAction, clause):
-            if isinstance(step.action, nodes.Literal):
-                yield from _mixed(step.action, variables, parameters.get(key_of(step.action), ()))
+    for clause, action in flow.actions:
+        wanted = parameters.get(key_of(action), ())
+        variables = variables_of(clause, adders) if any(wanted) else {}
+        for argument, unit in zip(action.arguments, wanted, strict=False):
+            value, help = value_of(argument, variables), "convert it: `{0} * {1:.6g}`"
+            if isinstance(argument, nodes.Number):
+                value, help = Value(unit=_unit_of(argument.value, Value(unit=unit))), "write `{2:.6g}`"
+            if value.unit != unit and {value.unit, unit} <= _FACTORS.keys() and _alike(value.unit, unit):
+                name, factor = format_term(argument), _factor(value.unit, unit)
+                number = argument.value * factor if isinstance(argument, nodes.Number) else 0
+                message = (
+                    f"`{name}` is in {_named(value.unit)}, but `{action.functor}` expects {_named(unit)}"
+                )
+                yield problem(UNIT, message, argument.span, help.format(name, factor, number))
 
 
-def _turns(action: nodes.Literal, wanted: Iterable[str]) -> Iterator[Diagnostic]:
-    """Return warnings about constants that are certainly not in radians."""
-    for argument, unit in zip(action.arguments, wanted, strict=False):
-        if isinstance(argument, nodes.Number) and abs(argument.value) >= _TURN and unit.startswith("radians"):
-            degrees, number = unit.replace("radians", "degrees"), format_term(argument)
-            message = f"`{number}` is in {degrees}, but `{action.functor}` expects {unit}"
-            right = _shown(converted(argument.value, "degrees", "radians"))
-            help = f"write `{right}`, or `unit: degrees` in the mapping file"
-            yield problem(UNIT, message, argument.span, help)
+def _alike(unit: str, other: str) -> bool:
+    """Return whether two units measure the same."""
+    return _FACTORS[unit][0] == _FACTORS[other][0]
 
 
-def _mixed(
-    action: nodes.Literal, variables: Mapping[str, Value], wanted: Iterable[str]
-) -> Iterator[Diagnostic]:
-    for argument, unit in zip(action.arguments, wanted, strict=False):
-        value = variables.get(argument.name) if isinstance(argument, nodes.Variable) else None
-        if value is None or value.unit == unit or not {value.unit, unit} <= _FACTORS.keys():
-            continue
-        (kind, size), (other, other_size) = _FACTORS[value.unit], _FACTORS[unit]
-        if kind == other:
-            name = format_term(argument)
-            message = f"`{name}` is in {_named(value.unit)}, but `{action.functor}` expects {_named(unit)}"
-            yield problem(UNIT, message, argument.span, f"convert it: `{name} * {_shown(size / other_size)}`")
+def _factor(unit: str, wanted: str) -> float:
+    return _FACTORS[unit][1] / _FACTORS[wanted][1]

@@ -22,8 +22,6 @@ from jacaros.agents.terms.functions import ARITIES
 
 Key = tuple[str, int]
 """Name and number of arguments; the name of a strongly negated belief begins with ``~``."""
-
-
 ANY: Final = -1
 """A number of arguments that is not known."""
 
@@ -48,8 +46,8 @@ class Value:
         """Return whether both may be the same value."""
         if not self.kind or not other.kind:
             return True
-        alike = self.kind == other.kind
-        return alike and not (self.options and other.options and set(self.options).isdisjoint(other.options))
+        apart = self.options and other.options and set(self.options).isdisjoint(other.options)
+        return self.kind == other.kind and not apart
 
 
 UNKNOWN: Final = Value()
@@ -111,7 +109,7 @@ class ProgramFlow:
         said, spelled: words of strings that are not only printed; words of strings that may be read as terms.
         is_open: beliefs, plans or agents come from elsewhere at run time.
         tells_unseen: messages may tell other agents anything.
-        actions: the steps that are actions of the environment.
+        actions: actions of the environment, with their plans.
         texts: strings that are told to other agents, which refuse them.
         files: the program's own files.
     """
@@ -124,7 +122,7 @@ class ProgramFlow:
     spelled: set[str] = field(default_factory=set)
     is_open: bool = False
     tells_unseen: bool = False
-    actions: list[nodes.Literal] = field(default_factory=list)
+    actions: list[tuple[nodes.Node, nodes.Literal]] = field(default_factory=list)
     texts: list[nodes.String] = field(default_factory=list)
     files: set[str] = field(default_factory=set)
 
@@ -143,15 +141,10 @@ def flow_of(
     """
     collector = _Collector(actions, observables or {})
     for belief in program.beliefs:
-        collector.collect(belief, is_fact=isinstance(belief, nodes.Literal))
-    for goal in program.goals:
-        collector.collect(goal)
-    for plan in program.plans:
-        collector.collect(plan)
-    found = collector.found
-    spans = [each.span for each in (*program.beliefs, *program.goals, *program.plans)]
-    found.files = {each.file.name for each in spans if each is not None and each.file.name[:1] != "$"}
-    return found
+        collector.collect(belief, is_belief=True)
+    for clause in (*program.goals, *program.plans):
+        collector.collect(clause)
+    return collector.found
 
 
 def key_of(literal: nodes.Literal) -> Key:
@@ -175,18 +168,17 @@ def source_of(literal: nodes.Literal) -> str:
     return ""
 
 
+@dataclass(frozen=True)
 class Flow:
     """The beliefs of all agents of a project.
 
-    Args:
+    Attributes:
         programs: the programs of its agents.
         observables: the properties and signals of its artifacts, by name.
     """
 
-    def __init__(
-        self, programs: Sequence[ProgramFlow], observables: Mapping[str, Sequence[Adder]] | None = None
-    ) -> None:
-        self.programs, self._observables = programs, observables or {}
+    programs: Sequence[ProgramFlow]
+    observables: Mapping[str, Sequence[Adder]] = field(default_factory=dict)
 
     @property
     def is_open(self) -> bool:
@@ -199,12 +191,9 @@ class Flow:
         Agents with a file in common count as one: a belief that one of them has may be what its plans are for.
         """
         kin = [each for each in self.programs if each is program or each.files & program.files]
+        tables = [each.adders for each in kin] + [each.told for each in self.programs]
         found: dict[str, list[Adder]] = {}
-        for table in (
-            *(each.adders for each in kin),
-            *(each.told for each in self.programs),
-            self._observables,
-        ):
+        for table in (*tables, self.observables):
             for name, adders in table.items():
                 found.setdefault(name, []).extend(adders)
         return found
@@ -253,16 +242,20 @@ def variables_of(clause: nodes.Node, known: Mapping[str, Sequence[Adder]]) -> di
     """
     found: dict[str, Value] = {}
     for literal in _given(clause):
-        adders = known.get(key_of(literal)[0], ())
-        size = len(literal.arguments)
-        for place, argument in enumerate(literal.arguments) if adders else ():
+        adders = of_size(known, key_of(literal))
+        for place, argument in enumerate(literal.arguments if adders else ()):
             if not isinstance(argument, nodes.Variable) or argument.annotations is not None:
                 continue
-            value = merged(place_of(each, place) for each in adders if each.size in (None, size))
+            value = merged(place_of(each, place) for each in adders)
             before = found.setdefault(argument.name, value)
             if before != value:
                 found[argument.name] = merged((before, value))
     return found
+
+
+def of_size(adders: Mapping[str, Sequence[Adder]], key: Key) -> list[Adder]:
+    """Return what can give beliefs of this name and number of arguments."""
+    return [each for each in adders.get(key[0], ()) if each.size in (None, key[1])]
 
 
 def place_of(adder: Adder, place: int) -> Value:
@@ -297,10 +290,7 @@ def _given(clause: nodes.Node) -> Iterator[nodes.Literal]:
 _WORD: Final = re.compile(r"\w+")
 _READABLE: Final = re.compile(r"\w\(|<-|^\s*[-+!?]")
 """Text that may be read as a term, goal or plan."""
-_READ: Final = ".term2string"
-_DELETES: Final = ".abolish"
 _TELLS, _ASKS = ("tell", "signal"), ("askOne", "askAll")
-_PLANS_TOLD: Final = "tellHow"
 
 
 class _At(NamedTuple):
@@ -331,15 +321,17 @@ class _Collector:
         self._variables: dict[str, Value] | None = None
         self._stack: list[tuple[nodes.Node, _At]] = []
 
-    def collect(self, clause: nodes.Plan | nodes.Rule | nodes.Literal, is_fact: bool = False) -> None:
-        """Collect from a plan, a rule, an initial belief (*is_fact*) or an initial goal."""
+    def collect(self, clause: nodes.Node, is_belief: bool = False) -> None:
+        """Collect from a plan, a rule, an initial belief or an initial goal."""
         self._clause, self._variables = clause, None
-        if is_fact:
-            self._add(self.found.adders, "fact", clause)
-        elif isinstance(clause, nodes.Literal):
-            self._push(_At(), *_below(clause))
-        else:
+        if clause.span is not None and is_own(clause):
+            self.found.files.add(clause.span.file.name)
+        if not isinstance(clause, nodes.Literal):
             self._push(_At(), clause)
+        elif is_belief:
+            self._add(self.found.adders, "fact", clause)
+        else:
+            self._push(_At(), *_below(clause))
         while self._stack:
             node, at = self._stack.pop()
             self._look(node, at)
@@ -358,7 +350,7 @@ class _Collector:
             case nodes.Achieve(goal=nodes.Literal() as goal):
                 self._push(_At(), *_below(goal))
             case nodes.ExternalAction(action=nodes.Literal() as action):
-                self.found.actions.append(action)
+                self.found.actions.append((self._clause, action))
                 self._push(_At(), *_below(action))
             case nodes.Literal():
                 self._literal(node, at)
@@ -443,13 +435,13 @@ class _Collector:
             arguments = arguments[:place] + arguments[place + 2 :]
         if action.condition is not None and len(arguments) > action.condition:
             self._push(_At(asked=True), arguments.pop(action.condition))
-        below = _At(passed=not action.prints, read=call.name == _READ or action is UNDECLARED)
+        below = _At(passed=not action.prints, read=call.name == ".term2string" or action is UNDECLARED)
         for each in arguments:
             if action.awaits and not isinstance(each, nodes.BodyTerm):
                 self._push(_At(asked=True), each)
             elif action.awaits:
                 self._await(each)
-            elif call.name == _DELETES and isinstance(each, nodes.Literal):
+            elif call.name == ".abolish" and isinstance(each, nodes.Literal):
                 self._read("deletion", each)
             else:
                 self._push(below, each)
@@ -476,7 +468,7 @@ class _Collector:
                 self._add(self.found.adders, "answer", each)
             else:
                 self._push(_At(), *((each,) if word in _ASKS else _below(each)))
-        self.found.tells_unseen |= word == _PLANS_TOLD and isinstance(content, nodes.Variable)
+        self.found.tells_unseen |= word == "tellHow" and isinstance(content, nodes.Variable)
 
     # Adders and readers.
 

@@ -153,7 +153,7 @@ MEANT = {
     "body_statements/control_statements_as_internal_actions": {"never-matches"},
     "body_statements/if_without_else": {"unknown-belief"},
     "concurrency/fork_with_needs": {"short-wait"},
-    "failure/checked_goals": {"never-matches", "unknown-belief"},
+    "failure/checked_goals": {"never-matches"},
     "failure/error_code_annotation": {"unknown-belief"},
     "failure/goal_variable_failure_continues": {"context-never-true"},
     "failure/inapplicable_handler_drops_intention": {"context-never-true", "narrow-handler"},

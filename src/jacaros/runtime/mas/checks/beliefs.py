@@ -114,9 +114,8 @@ class _BeliefCheck:
         is_known = all(each.types is not None for each in wholes)
         types = list(dict.fromkeys(kind for each in wholes for kind in each.types or ()))
         observables = observables_of(types) if is_known else None
-        self._observables = observables or {}
         flows = [flow_of(program, STANDARD, observables) for program in programs]
-        self._flow = Flow(flows, observables)
+        self._flow = Flow(flows, observables or {})
         self._flows = flows[: len(wholes[0].programs)]
         self._knows_artifacts = observables is not None
         self._programs = programs
@@ -127,7 +126,7 @@ class _BeliefCheck:
             and not lacks_actions(programs, types)
         )
         self._units = parameter_units(types) if self._is_closed else {}
-        self._misspelt = _misspelt_adders(flows, self._observables)
+        self._misspelt = _misspelt_adders(flows, self._flow.observables)
         self._mentioned = {key for each in flows for key in each.mentioned}
         self._reported: set[Key] = set()
 
@@ -179,7 +178,7 @@ class _BeliefCheck:
 
     def _never_added(self, reader: Reader, adders: Mapping[str, Sequence[Adder]]) -> Iterator[Diagnostic]:
         (name, size), literal = reader.key, reader.literal
-        if any(name.endswith(f"_{each}") for each in self._observables):
+        if any(name.endswith(f"_{each}") for each in self._flow.observables):
             return  # some properties begin with the name of the robot
         similar = [each for each in adders if is_misspelt(name, each)]
         message = f"belief `{name}/{size}` is never added"
