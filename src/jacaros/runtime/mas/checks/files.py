@@ -398,7 +398,11 @@ class _Checked:
         from jacaros.runtime.mas.checks.beliefs import Whole
 
         trees = [program for _, program in self.programs]
-        return Whole(trees, made_types(self.deployment, trees, type_finder(self._modules())))
+        try:
+            find_type = type_finder(self._modules())
+        except ModuleUnreadable:  # reported with the artifacts
+            return Whole(trees, None)
+        return Whole(trees, made_types(self.deployment, trees, find_type))
 
     def _others(self) -> "list[Whole] | None":
         """Return the other projects that run these programs; None if one of them is not known."""
