@@ -2,14 +2,14 @@ import { rounded, themeColor } from "./elements.js";
 import { KIND } from "./lanes_bars.js";
 import { fitted } from "./time_canvas.js";
 
-const MERGED = 3, NEAR = 7;  // pixels: bars, and marks, that fit into them come together
+const MERGED = 4, NEAR = 7;  // pixels: bars, and marks, that fit into them come together
 const SHADES = 4;  // of strips
 const LETTER = 6.03;  // pixels of a letter of the font
 const FONT = "10px ui-monospace, Menlo, Consolas, 'DejaVu Sans Mono', monospace";
 const COLOURS = ["accent", "accent", "warn", "muted", "good", "bad", "bad", "warn"];  // by kind
 const SOLID = [0.55, 0.3, 0.35, 0.2, 0.45, 0.6, 0.9, 0.8];  // how opaque a kind is
 
-/** Draws lanes on a canvas: only what is in view, and nothing that is narrower than three pixels by itself. */
+/** Draws lanes on a canvas: only what is in view, and nothing that is narrower than four pixels by itself. */
 export class LanesDrawing {
   constructor(canvas, axis) { Object.assign(this, { canvas, axis }); }
 
