@@ -144,6 +144,8 @@ class Teller:
         self._pursuits: dict[Key, _Pursuit] = {}
         self._failures: dict[Key, _Failure] = {}
         self._suspended: dict[Key, Tale] = {}
+        self._over: dict[Key, float] = {}
+        """When suspended intentions ended."""
         self._open: dict[str, set[Any]] = {}
         self._idle: dict[str, float] = {}
         """Since when agents have no intention; those that have one are in *_open*."""
@@ -180,9 +182,7 @@ class Teller:
         for pursuit in self._pursuits.values():
             pursuit.tale.last = past.end
             pursuit.tale.states.add("open")
-        for key, tale in self._suspended.items():
-            if key in self._pursuits or past.end - tale.last <= AT_ONCE:  # until the end of the run
-                tale.rank, tale.level, tale.last = Rank.TROUBLE, "warning", past.end
+        self._tell_suspended(past)
         pursuits = [each for each in self._tales.values() if each.goals]
         pursuits.sort(key=lambda each: each.weight)
         for each in pursuits[:MOST_PURSUITS]:
@@ -259,9 +259,18 @@ class Teller:
     def _suspend(self, t: float, key: Key, number: Any) -> None:
         pursuit = self._pursuits.get(key)
         if pursuit is not None and number == next(iter(pursuit.stack)):
-            told = f"`{_cut(shown(pursuit.stack[number]))}` was suspended"
+            told = f"`!{name_of(pursuit.stack[number])}` was suspended"
             self._suspended[key] = self._tell("suspended", Rank.ROUTINE, t, told, who=key[0])
             self._suspended[key].lasts = True
+
+    def _tell_suspended(self, past: Past) -> None:
+        """Warn of agents all of whose goals were suspended at the end: nothing was left to resume them."""
+        left = [key for key in self._suspended if past.end - self._over.get(key, past.end) <= AT_ONCE]
+        suspended, wanted = [agent for agent, _ in left], [agent for agent, _ in self._wanted(past)]
+        for key in left:
+            if suspended.count(key[0]) == wanted.count(key[0]):
+                tale = self._suspended[key]
+                tale.rank, tale.level, tale.last = Rank.TROUBLE, "warning", past.end
 
     def _end_intention(self, t: float, key: Key, state: str = "") -> None:
         pursuit = self._pursuits.pop(key, None)
@@ -269,7 +278,7 @@ class Teller:
             pursuit.tale.last = t
             pursuit.tale.states.update({state} - {"replaced"})
         if key in self._suspended:
-            self._suspended[key].last = t
+            self._over[key] = self._suspended[key].last = t
         intentions = self._open.get(key[0], set())
         intentions.discard(key[1])
         if not intentions:
@@ -356,6 +365,11 @@ class Teller:
 
     # ---- the end
 
+    def _wanted(self, past: Past) -> list[tuple[str, str]]:
+        """Return the goals that the end of the run took from agents, or that were open then."""
+        dropped = [(agent, goal) for t, agent, goal in self._dropped if past.end - t <= AT_ONCE]
+        return dropped + [(key[0], next(iter(each.stack.values()))) for key, each in self._pursuits.items()]
+
     def _end(self, past: Past) -> Tale:
         code, step = past.exit_code, ending_step(past)
         because = f", because {step.agent} ran {step.text}" if step is not None else ""
@@ -368,8 +382,7 @@ class Teller:
         silent = {each: past.end - t for each, t in self._idle.items() if not self._open.get(each)}
         quiet = [each for each, passed in silent.items() if passed >= (AT_ONCE if each in lost else LONG)]
         lost.intersection_update(quiet)
-        ended = {(agent, goal) for t, agent, goal in self._dropped if past.end - t <= AT_ONCE}
-        ended |= {(key[0], next(iter(each.stack.values()))) for key, each in self._pursuits.items()}
+        ended = self._wanted(past)
         if idle := [each for each in quiet if each in lost] or (quiet if not ended else []):
             since = min(silent[each] for each in idle)
             parts.append(f"{_names(idle)} had no goal for the last {_duration(since)}")
