@@ -150,3 +150,27 @@ async def _shows_loss(page: Page) -> None:
     await page.wait_for("document.querySelector('#headline').innerText.includes('last message')")
     assert await page.text(".onair") == "Connection lost"
     assert not await page.evaluate("document.querySelector('.live').checkVisibility()")
+
+
+@needs_chromium
+async def test_earlier_rounds_of_a_loop_are_one_line_of_why() -> None:
+    recorder = Recorder()
+    recorder.world(WORLD)
+    plan = {"id": 1, "trigger": "+!go(N)", "file": "a.asl", "line": 3, "end": 4}
+    recorder.event(0.0, "program", {"agent": "watch", "plans": [plan], "rules": []})
+    for number in range(1, 26):
+        event = {
+            "id": number,
+            "parent": number - 1,
+            "agent": "watch",
+            "trigger": f"+!go({number})",
+            "intention": 1,
+        }
+        recorder.event(float(number), "deliberation", {**event, "chosen": 1, "options": [], "untried": []})
+    recorder.close()
+    async with replayed(recorder.recording, 25.0) as page:
+        await page.click("#tab-causes")
+        await page.click(".why .effects li:first-child .link")
+        await page.wait_for("document.querySelector('.why .rounds')")
+        assert (await page.text(".why .rounds")).split("\n")[-1] == "23 earlier rounds like this"
+        assert len(await page.texts(".why .chain li")) == 2, "the newest round, and the number of the others"
