@@ -10,7 +10,7 @@ from jacaros.look.page.scene import RobotView
 from jacaros.look.records.recording import Recording
 from jacaros.robots.world import World
 
-LONG = "connected(corridor_of_the_second_floor,/robot_1/battery_state,depot_in_the_cellar)"
+LONG = "planned_route(corridor_of_the_second_floor,/robot_1/battery_state,depot_in_the_cellar)"
 LINE = f"+!g <- {'!some_goal; ' * 7}.print(done).".ljust(100, "%")
 """A line of a program, 100 columns wide."""
 RIGHT = "[aria-controls=right]"
