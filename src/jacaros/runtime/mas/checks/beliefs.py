@@ -193,7 +193,14 @@ class _BeliefCheck:
                 return  # it is run with that artifact
             private = [each for flow in self._flow.programs for each in flow.adders.get(name, ())]
             near = _to_be_told(private[0]) if private else did_you_mean(close_matches(name, adders))
-            yield problem(UNKNOWN, message, literal.span, near or _to_be_added(literal, shipped))
+            yield problem(UNKNOWN, message, literal.span, near or self._to_be_added(literal, shipped))
+
+    def _to_be_added(self, literal: nodes.Literal, shipped: str) -> str:
+        if shipped:
+            return f"`{shipped}` has it: run and check with `--mapping {shipped}`"
+        written = format_term(nodes.replace(literal, annotations=None))
+        mapped = ", or check with its `--mapping FILE`" if self._is_lone else ""
+        return f"add it in a plan (`+{written}`), or at the beginning (`{written}.`){mapped}"
 
     def _never_read(self, doubtful: frozenset[str]) -> Iterator[Diagnostic]:
         """Return warnings about beliefs that nothing reads, and whose names are nearly those of others that are read."""
@@ -289,13 +296,6 @@ def _to_be_told(adder: Adder) -> str:
     where = f"{literal.span.file.name}:{literal.span.line}" if literal and literal.span else "another agent"
     told = format_term(literal) if literal else ""
     return f"{where} adds it for its own agent only; to pass it on: `.send(NAME, tell, {told})`"
-
-
-def _to_be_added(literal: nodes.Literal, shipped: str) -> str:
-    if shipped:
-        return f"`{shipped}` has it: run and check with `--mapping {shipped}`"
-    written = format_term(nodes.replace(literal, annotations=None))
-    return f"add it in a plan (`+{written}`), or at the beginning (`{written}.`)"
 
 
 def _shipped_with(name: str) -> str:
