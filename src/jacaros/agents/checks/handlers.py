@@ -122,8 +122,10 @@ def _misspelt_plans(found: ByKind, posts: Posts) -> Iterator[Diagnostic]:
         ):
             continue
         key = _key(literal)
+        if posts.may_post(key):
+            continue
         meant = [name for name, size in sorted(known) if size == key[1] and is_misspelt(key[0], name)]
-        if meant and not posts.may_post(key):
+        if meant:
             message = f"nothing posts the goal `!{_text(key)}`"
             yield problem(
                 "unused-handler", message, trigger.span, did_you_mean(f"+!{name}" for name in meant[:1])

@@ -50,22 +50,21 @@ _OPEN_METHODS: Final = ("define_operation", "make_artifact", "create(")
 
 
 def check_artifacts(
-    deployment: Deployment,
     programs: Sequence[tuple[AgentSpec, nodes.Program]],
     folders: Sequence[Path],
     find_type: "FindType",
+    types: "Sequence[type[Artifact]] | None",
 ) -> list[Diagnostic]:
     """Return warnings about what agents do with the artifacts of a project.
 
     Args:
-        deployment: the project.
         programs: the agents with their programs, including included files.
         folders: folders of the project, with its mapping files.
         find_type: finds the artifact classes of the project.
+        types: the types of all its artifacts; None if they are not known.
     """
     named = [each for _, program in programs for each in _named_types(program)[0] if each.of_library]
     found = list(_unknown_types(named, folders, find_type))
-    types = made_types(deployment, [program for _, program in programs], find_type)
     if types is not None:
         found += [*_unknown_operations(programs, types), *_unknown_resources(programs, types)]
     return found
@@ -92,15 +91,12 @@ def _unknown_operations(
 _GOAL: Final = re.compile(r"no plan for `!(\w+)/(\d+)`")
 
 
-def operations_as_goals(
-    deployment: Deployment, programs: Sequence[tuple[AgentSpec, nodes.Program]], find_type: "FindType"
-) -> Callable[[Diagnostic], Diagnostic]:
+def operations_as_goals(types: "Sequence[type[Artifact]]") -> Callable[[Diagnostic], Diagnostic]:
     """Return the function that adds the help to a warning about a goal without a plan that is an operation."""
 
     @cache
     def has(name: str, arity: int) -> bool:
-        types = made_types(deployment, [program for _, program in programs], find_type)
-        return _Offered(types or ()).has(name, arity)
+        return _Offered(types).has(name, arity)
 
     def helped(warning: Diagnostic) -> Diagnostic:
         goal = _GOAL.fullmatch(warning.message) if warning.code == "unknown-goal" else None

@@ -313,6 +313,7 @@ class _Checked:
         from jacaros.runtime.mas.checks.artifacts import (
             check_artifacts,
             is_wrong_mapping,
+            made_types,
             operations_as_goals,
         )
         from jacaros.runtime.mas.environment import types_of
@@ -331,24 +332,20 @@ class _Checked:
         except ProjectError as error:
             return list(map(_of_project, error.diagnostics))
         programs = self.programs if is_known else []
+        trees = [program for _, program in programs]
+        types = made_types(self.deployment, trees, find_type)
         if is_known:
-            helped = operations_as_goals(self.deployment, self.programs, find_type)
-            self._findings.diagnostics[:] = map(helped, self._findings.diagnostics)
-        found = check_artifacts(self.deployment, programs, self._folders, find_type)
-        return [*found, *self._of_agents(programs, find_type)]
+            self._findings.diagnostics[:] = map(operations_as_goals(types or ()), self._findings.diagnostics)
+        found = check_artifacts(programs, self._folders, find_type, types)
+        if types is None or not is_known:
+            known = KnownActions(STANDARD)
+            return [*found, *(each for _, program in self.programs for each in missing_marks(program, known))]
+        return [*found, *self._of_focus(find_type, types)]
 
-    def _of_agents(
-        self, programs: list[tuple[AgentSpec, nodes.Program]], find_type: "FindType"
-    ) -> list[Diagnostic]:
-        from jacaros.runtime.mas.checks.artifacts import made_types  # here: see `of_artifacts`
-        from jacaros.runtime.mas.checks.focusing import check_focus
+    def _of_focus(self, find_type: "FindType", types: Sequence[type]) -> list[Diagnostic]:
+        from jacaros.runtime.mas.checks.focusing import check_focus  # here: see `of_artifacts`
         from jacaros.runtime.mas.checks.observables import observables_of
 
-        trees = [program for _, program in programs]
-        types = made_types(self.deployment, trees, find_type) if programs else None
-        if types is None:
-            known = KnownActions(STANDARD)
-            return [each for _, program in self.programs for each in missing_marks(program, known)]
         if not types or self.deployment.ignored:
             return []
 
@@ -358,11 +355,11 @@ class _Checked:
             return None if found is None else found.keys()
 
         # The same program may be that of several agents.
-        read = {agent.source_path: program for agent, program in programs}
+        read = {agent.source_path: program for agent, program in self.programs}
         every = [
             (each, read[each.source_path]) for each in self.deployment.agents if each.source_path in read
         ]
-        return check_focus(self.deployment, every or programs, properties)
+        return check_focus(self.deployment, every or self.programs, properties)
 
     def check_goals(self) -> None:
         """Note plans for goals that no agent posts, in the folder of the project, unless parts of it are not run."""

@@ -89,18 +89,22 @@ class _Focus:
         owners = self._owners()
         if owners is None:
             return
-        flows = [(agent, program, flow_of(program, STANDARD)) for agent, program in self._programs]
-        if any(flow.is_open or flow.tells_unseen or agent.agent_class for agent, _, flow in flows):
-            return
-        focused: dict[str, set[str]] = {}  # the properties that agents with a file focus
-        added = {name for _, _, flow in flows for name in (*flow.adders, *flow.told)}
-        for agent, program, flow in flows:
+        seen: list[set[str]] = []  # for each agent
+        for agent, program in self._programs:
             kinds = self._focused(agent, program)
-            if kinds is None:
+            if kinds is None or agent.agent_class:
                 return
-            seen = {name for kind in kinds for name in self._properties(kind) or ()}
+            seen.append({name for kind in kinds for name in self._properties(kind) or ()})
+        if all(each >= owners.keys() for each in seen):
+            return
+        flows = [(agent, program, flow_of(program, STANDARD)) for agent, program in self._programs]
+        if any(flow.is_open or flow.tells_unseen for _, _, flow in flows):
+            return
+        added = {name for _, _, flow in flows for name in (*flow.adders, *flow.told)}
+        focused: dict[str, set[str]] = {}  # the properties that agents with a file focus
+        for (_, _, flow), own in zip(flows, seen, strict=True):
             for file in flow.files:
-                focused.setdefault(file, set()).update(seen)
+                focused.setdefault(file, set()).update(own)
         for agent, _, flow in flows:
             for reader in _first(flow.readers):
                 name = reader.key[0]
