@@ -40,12 +40,13 @@ export class StoryView {
   }
 
   line({ t, text, level, count, until, agent, robot }, n) {
+    const sign = element("i", "sign", SIGNS[level] ?? "");
+    if (level !== "note") Object.assign(sign, { role: "img", ariaLabel: level });
     const folded = [count > 1 ? `${count} times` : "", until ? `until ${clock(until)}` : ""].filter(Boolean).join(", ");
     const made = button("moment", () => {
       this.context.time.go(t);
       if (agent || robot) this.context.selection.choose(agent ? { agent } : { robot });
-    }, element("time", "", clock(t)), element("i", "sign", SIGNS[level] ?? ""), element("span", "", ...coded(text), folded ? element("span", "folded", `\u2002${folded.replaceAll(" ", "\u00a0")}`) : ""));
-    if (level !== "note") made.setAttribute("aria-label", `${clock(t)} ${level}: ${text} ${folded}`);
+    }, element("time", "", clock(t)), sign, element("span", "", ...coded(text), folded ? element("span", "folded", `\u2002${folded.replaceAll(" ", "\u00a0")}`) : ""));
     return element("li", `${level}${n === this.now ? " now" : ""}`, keyed(`story ${n}`, made));
   }
 }
