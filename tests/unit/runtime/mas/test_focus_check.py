@@ -91,6 +91,14 @@ def test_agents_that_focus_or_get_the_belief_otherwise_are_not_reported(
     assert found(tmp_path, declared, program) == []
 
 
+def test_an_artifact_beside_those_that_the_library_focuses_is_reported(tmp_path: Path) -> None:
+    library = '{ include("$jacaros/artifacts.asl") }'
+    program = (
+        f'{library}\n!go.\n+!go <- !use_artifact("l", "Lamp"); makeArtifact("c", "Counter", [], _).\n{COUNTS}'
+    )
+    assert len(found(tmp_path, None, program)) == 1
+
+
 def test_agents_with_the_same_program_count_as_one(tmp_path: Path) -> None:
     both = "focus: lab.l }\n agent bob: a.asl { focus: lab.c"
     assert found(tmp_path, both, COUNTS) == []

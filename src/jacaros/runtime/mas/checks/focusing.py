@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 CODE: Final = "unfocused-artifact"
 _FOCUSING: Final = frozenset({"focus", "focusWhenAvailable"})
+_USING: Final = "use_artifact"
+"""The goal of the library that makes and focuses an artifact."""
 _MAIN: Final = "main"
 _WORD: Final = re.compile(r"\w+")
 
@@ -140,13 +142,19 @@ class _Focus:
             for (space, name), artifact in self._declared.items()
             if any(each.artifact == name and each.workspace in (None, space) for each in agent.focus)
         }
-        goals = (step.goal for step in ByKind(program.plans).of(nodes.Achieve))
-        posted = {goal.functor for goal in goals if isinstance(goal, nodes.Literal)}
+        goals = [step.goal for step in ByKind(program.plans).of(nodes.Achieve)]
+        for goal in goals:
+            if isinstance(goal, nodes.Literal) and goal.functor == _USING and is_own(goal):
+                kind = type_of(goal.arguments[1]) if len(goal.arguments) > 1 else None
+                if kind is None:
+                    return None
+                found.add(kind)
+        posted = {goal.functor for goal in goals if isinstance(goal, nodes.Literal)} - {_USING}
         for plan in program.plans:
             literal = plan.trigger.literal
             focuses = [each for each in _actions(plan) if each.functor in _FOCUSING and each.arguments]
-            if focuses and not is_own(each := focuses[0]) and isinstance(literal, nodes.Literal):
-                if literal.functor in posted:
+            if focuses and not is_own(focuses[0]):
+                if isinstance(literal, nodes.Literal) and literal.functor in posted:
                     return None
                 continue
             for each in focuses:
