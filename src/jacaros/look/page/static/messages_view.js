@@ -47,6 +47,7 @@ export class MessagesView {
       this.context.selection.choose({ agent });
       this.context.open("agents");
     }, agent))));
+    head.setAttribute("role", "listitem");
     refill(this.chart, [head, ...shown.filter((each) => !left.includes(each)).map((each) => this.row(each, agents, t))]);
   }
 
