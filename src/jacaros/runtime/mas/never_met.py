@@ -36,8 +36,10 @@ def never_met(mind: "Mind") -> Iterator[str]:
             yield f"`+{format_term(plan.node.trigger.literal)}` has not happened ({_place(plan)}): {why}"
     for intention in mind.alive.values():
         frame = None if intention.waiting is None else intention.waiting.frame
-        place = None if frame is None else Place(frame, getattr(frame[STEP], "info", None))
-        for why in unanswered(mind, place) if place is not None else ():
+        if frame is None:
+            continue
+        place = Place(frame, getattr(frame[STEP], "info", None))
+        for why in unanswered(mind, place):
             if why.endswith("?") or "there is" in why or "the belief is" in why or "before" in why:
                 yield f"`{place.step()}` has not ended ({place.where()}): {why}"
 

@@ -6,6 +6,11 @@ import pytest
 
 from jacaros.testing import run_project
 
+CAME_BEFORE = (
+    "`.wait({ +at(_) })` has not ended (a.asl:2): `at(_)` was added before; wait for the condition: "
+    "`.wait(at(_))`"
+)
+
 
 def told(folder: Path, program: str) -> list[str]:
     path = folder / "a.asl"
@@ -30,11 +35,7 @@ def told(folder: Path, program: str) -> list[str]:
             "!go. +!go <- +at(1, 2).\n+at(x, y) <- .print(a).",
             "`+at(x,y)` has not happened (a.asl:2): the belief is `at(1,2)`: a number, not an atom",
         ),
-        (
-            "at(1). !go.\n+!go <- .wait({+at(_)}).",
-            "`.wait({ +at(_) })` has not ended (a.asl:2): `at(_)` was added before; wait for the condition: "
-            + "`.wait(at(_))`",
-        ),
+        ("at(1). !go.\n+!go <- .wait({+at(_)}).", CAME_BEFORE),
         (
             "battery(1). !go.\n+!go <- .wait(batery(_)).",
             "`.wait(batery(_))` has not ended (a.asl:2): no belief `batery`; did you mean `battery`?",
