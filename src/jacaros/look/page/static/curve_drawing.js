@@ -105,18 +105,4 @@ export class CurveDrawing {
     pen.textAlign = "center";
     pen.fillText(sign, x + 0.5, top - 6);
   }
-
-  /** The times for which a plan was refused again and again, at the height `y`. */
-  refusals(runs, y, text) {
-    const { pen, axis } = this, color = themeColor("warn");
-    pen.fillStyle = color;
-    for (const { from, to } of runs) {
-      const x = Math.max(axis.left, axis.x(from));
-      pen.fillRect(x, y - 2, Math.max(3, Math.min(axis.x(to), this.right) - x), 4);
-    }
-    pen.textAlign = "right";
-    let short = text;
-    while (short.length > 4 && pen.measureText(short).width > axis.left - 12) short = `${short.slice(0, -2)}…`;
-    this.label(short, axis.left - 6, y, color, false);
-  }
 }

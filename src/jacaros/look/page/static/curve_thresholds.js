@@ -1,3 +1,5 @@
+import { planName } from "./link_words.js";
+
 /** What the programs of agents compare beliefs with, from their `program` records. */
 export class CurveThresholds {
   constructor(minds, sources) {
@@ -30,10 +32,4 @@ export class CurveThresholds {
     }
     return [...lines.values()].map(({ labels, ...line }) => ({ ...line, label: [...labels].join(", ") }));
   }
-}
-
-/** The label of a plan, or its trigger when nobody gave it one. */
-export function planName(plan) {
-  if (!plan) return "a plan";
-  return plan.label && !/^p__\d+$/.test(plan.label) ? `@${plan.label}` : plan.trigger;
 }

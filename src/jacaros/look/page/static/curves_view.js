@@ -1,6 +1,5 @@
 import { CurveDrawing } from "./curve_drawing.js";
 import { CurveScale, valueAt } from "./curve_scale.js";
-import { planName } from "./curve_thresholds.js";
 import { button, clock, element, isDark, setText } from "./elements.js";
 import { paced } from "./paced.js";
 import { robotColor } from "./palette.js";
@@ -11,14 +10,12 @@ import { TimePointer } from "./time_pointer.js";
 
 const LEAST = 60;  // pixels: the height of the plot
 const TOP = 14;  // pixels above it, for marks
-const ROW = 12;  // pixels of a row of refusals
-const HIGH = 130;  // pixels: a plot in which the refusals of two plans are drawn, not only of one
 const NEAR = 6;  // pixels between the pointer and a mark
 
-/** Numbers over time: a chip for each, and a plot with two axes, thresholds of contexts, marks of events and of refused plans. */
+/** Numbers over time: a chip for each, and a plot with two axes, thresholds of contexts, and marks of events. */
 export class CurvesView {
-  constructor(root, context, { sources, thresholds, refusals, log, minds }) {
-    Object.assign(this, { root, context, sources, thresholds, refusals, log, minds, axis: context.axis, choice: context.curves });
+  constructor(root, context, { sources, thresholds, log }) {
+    Object.assign(this, { root, context, sources, thresholds, log, axis: context.axis, choice: context.curves });
     this.series = new Map();
     this.chips = element("ul", "chips");
     this.more = element("select", "more");
@@ -87,7 +84,7 @@ export class CurvesView {
     const stamp = [this.stamp, axis.from, axis.to, axis.width, ...box, run.count].join(" ");
     if (stamp === this.drawn) return;
     this.drawn = stamp;
-    const rows = this.refusedIn(axis.from, axis.to, box[1] < HIGH ? 1 : 2), bottom = box[1] - 6 - ROW * rows.length;
+    const bottom = box[1] - 6;
     const drawing = new CurveDrawing(fitted(this.canvas, ...box), axis, { top: TOP, bottom, end: run.end });
     shown.forEach((source, i) => Object.assign(this.curves[i], { series: this.seriesOf(source), lines: this.thresholds.of(source) }));
     const scales = { left: this.scaleOf("left", bottom), right: this.scaleOf("right", bottom) };
@@ -96,9 +93,6 @@ export class CurvesView {
     for (const mark of this.marks) drawing.mark(mark);
     drawing.within(() => this.drawCurves(drawing, scales));
     drawing.scale(scales.right, "right");
-    const name = ([{ agent, plan }]) => planName(this.minds.plan(agent, plan));
-    rows.forEach((runs, n) => drawing.refusals(runs, bottom + 4 + ROW * (n + 0.5), `${countOf(runs)}× ${name(runs)} refused`));
-    this.rows = { bottom, rows };
   }
 
   scaleOf(side, bottom) {
@@ -126,19 +120,6 @@ export class CurvesView {
     return series;
   }
 
-  /** The refusals of the plans of the user's programs that were refused most often, each plan in a row. */
-  refusedIn(from, to, most) {
-    const plans = new Map();
-    for (const run of this.refusals.between(from, to)) {
-      const key = `${run.agent} ${run.plan}`, plan = this.minds.plan(run.agent, run.plan);
-      if (!plan || plan.file?.startsWith("$")) continue;
-      plans.set(key, [...(plans.get(key) ?? []), run]);
-    }
-    return [...plans.values()].sort((a, b) => countOf(b) - countOf(a)).slice(0, most);
-  }
-
-  refusalText({ agent, plan, count }) { return `${agent}: ${planName(this.minds.plan(agent, plan))} refused ${count === 1 ? "once" : `${count} times`}`; }
-
   // ---- the pointer
 
   click(x) {
@@ -151,18 +132,16 @@ export class CurvesView {
 
   markAt(x) { return this.marks?.findLast(({ t }) => Math.abs(this.axis.x(t) - x) < NEAR); }
 
-  hover(x, y) {
+  hover(x) {
     this.tip.hidden = x === null || x < this.axis.left;
     if (this.tip.hidden) return;
-    setText(this.tip, this.tellAt(x, y));
+    setText(this.tip, this.tellAt(x));
     const half = this.tip.offsetWidth / 2;
     this.tip.style.left = `${Math.max(half, Math.min(this.plot.clientWidth - half, x))}px`;
   }
 
-  tellAt(x, y) {
-    const { axis, rows: { bottom, rows } } = this, t = axis.t(x), runs = y > bottom ? rows[Math.floor((y - bottom - 4) / ROW)] : undefined;
-    const refused = runs?.find((run) => axis.x(run.from) - NEAR < x && axis.x(run.to) + NEAR > x), mark = this.markAt(x);
-    if (refused) return `${this.refusalText(refused)}, ${clock(refused.from)} to ${clock(refused.to)}: ${refused.why}`;
+  tellAt(x) {
+    const t = this.axis.t(x), mark = this.markAt(x);
     if (mark) return `${clock(mark.t)} ${mark.text}${mark.more ? `, and ${mark.more} more` : ""}`;
     return [clock(t), ...this.choice.shown.map((source) => `${source.title} ${valueText(source, t)}`)].join("  ");
   }
@@ -173,8 +152,6 @@ function magnitude(series) {
   const [low, high] = series.extremes(0, series.count);
   return Math.floor(Math.log10(Math.max(Math.abs(low), Math.abs(high)) || 1));
 }
-
-function countOf(runs) { return runs.reduce((sum, { count }) => sum + count, 0); }
 
 function valueText(source, t) {
   const value = valueAt(source, t);

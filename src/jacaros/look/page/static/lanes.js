@@ -73,7 +73,7 @@ class Rows {
 /** An agent: each intention in one of `slots`, a row of its states and one for each level of its stack of goals. */
 class AgentLane {
   constructor(name) {
-    Object.assign(this, { name, slots: [], open: new Map(), actions: new Rows("actions"), refusals: new Bars(true), triggers: new Map() });
+    Object.assign(this, { name, slots: [], open: new Map(), actions: new Rows("actions"), refusals: new Bars(true), refused: new Map(), triggers: new Map() });
   }
 
   deliberation(t, { id, trigger, intention, parent, chosen, options }) {
@@ -81,7 +81,11 @@ class AgentLane {
     if (this.triggers.size > TRIGGERS) this.triggers.delete(this.triggers.keys().next().value);
     // The records of a goal say neither its cause nor the event in whose plan it is.
     this.latest = { id, trigger, event: intention === null || intention === undefined ? undefined : this.triggers.get(parent) };
-    for (const { plan, why } of options ?? []) if (why) this.refusals.mark(t, chosen === null && trigger.startsWith("+!") ? KIND.refused : KIND.waits, { agent: this.name, plan, why, cause: id });
+    for (const { plan, why } of options ?? []) {
+      if (!why) continue;
+      this.refused.set(plan, (this.refused.get(plan) ?? 0) + 1);
+      this.refusals.mark(t, chosen === null && trigger.startsWith("+!") ? KIND.refused : KIND.waits, { agent: this.name, plan, why, cause: id });
+    }
   }
 
   goal(t, { id, goal, state, intention, why }) {

@@ -186,7 +186,7 @@ export class LanesDrawing {
   drawLabel({ label, y, height, sort, isOpen, isChosen }) {
     if (!label) return;
     const { pen, axis } = this, sign = isOpen === undefined ? "" : isOpen ? "▾ " : "▸ ";
-    pen.fillStyle = themeColor(sort === "states" ? "ink" : "muted");
+    pen.fillStyle = themeColor({ states: "ink", refusals: "warn" }[sort] ?? "muted");
     pen.textAlign = "left";
     if (isChosen) pen.font = `bold ${FONT}`;
     pen.fillText(sign + cut(label, axis.left - 26), 8, y + height / 2 + 0.5);

@@ -3,7 +3,7 @@ import { showWhy } from "./jumps.js";
 import { Bars, KIND } from "./lanes_bars.js";
 import { LanesDrawing } from "./lanes_drawing.js";
 import { barLines } from "./lanes_words.js";
-import { shortName } from "./link_words.js";
+import { planName, shortName } from "./link_words.js";
 import { TimePointer } from "./time_pointer.js";
 import { indexAt } from "./track.js";
 
@@ -12,7 +12,7 @@ const THIN = 3;  // pixels around an arrow
 const FOLDED = 2;  // intentions of a folded agent that have a high row
 const MANY = 6;  // agents from which on they are ordered, and can be filtered
 const LEGEND = [["runs", "runs"], ["acts", "acts"], ["waits", "waits"], ["suspended", "suspended"], ["lost", "lost goal"], ["handled", "failure with a plan"]];
-const HEIGHTS = { states: 16, more: 4, goals: 12, actions: 10, refusals: 6, resources: 12, operations: 12 };
+const HEIGHTS = { states: 16, more: 4, goals: 12, actions: 10, refusals: 8, resources: 12, operations: 12 };
 
 /** Lanes: intentions of each agent, owners of resources and operations of artifacts over time, on one canvas. */
 export class LanesView {
@@ -92,7 +92,17 @@ export class LanesView {
     });
     if (!slots.length) this.add("actions", actions.rows[0] ?? refusals, head);
     if (isOpen) for (const [n, row] of actions.rows.entries()) this.add("actions", row, { label: n ? "" : "  actions" });
-    if (refusals.count) this.add("refusals", refusals, { label: isOpen ? "  refused plans" : "" });
+    if (refusals.count) this.add("refusals", refusals, { label: this.mostRefused(lane) });
+  }
+
+  /** How often the plan of the user's programs that was refused most often was refused. */
+  mostRefused({ name, refused }) {
+    let most = [0, null];
+    for (const [id, count] of refused) {
+      const plan = this.minds.plan(name, id);
+      if (plan && !plan.file?.startsWith("$") && count > most[0]) most = [count, plan];
+    }
+    return most[1] ? `${most[0]}× ${planName(most[1])} refused` : "";
   }
 
   /** The lanes of agents: of the selected one, then of those with something in view, then of the others. */

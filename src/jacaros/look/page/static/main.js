@@ -30,7 +30,6 @@ import { Minds } from "./minds.js";
 import { Divider } from "./panes.js";
 import { ProgramView } from "./program_view.js";
 import { QuestionsView } from "./questions_view.js";
-import { Refusals } from "./refusals.js";
 import { RobotsView } from "./robots_view.js";
 import { Run } from "./run.js";
 import { SeriesSources } from "./series_sources.js";
@@ -62,9 +61,9 @@ export const NO_COMMANDS = {
 export function startPage({ live, commands }) {
   const world = new World(), links = new Links(), log = new Log(), minds = new Minds();
   const environment = new Environment(), messages = new Messages(), causes = new Causes(), debugging = new Debugging(), fleet = new Fleet(), lanes = new Lanes();
-  const sources = new SeriesSources(world), thresholds = new CurveThresholds(minds, sources), refusals = new Refusals();
+  const sources = new SeriesSources(world), thresholds = new CurveThresholds(minds, sources);
   const story = new Story();
-  const models = [story, world, links, log, minds, environment, messages, causes, debugging, fleet, sources, thresholds, refusals, lanes];
+  const models = [story, world, links, log, minds, environment, messages, causes, debugging, fleet, sources, thresholds, lanes];
   const run = new Run(models), selection = new Selection(), time = new Time(run, live);
   const context = { run, selection, commands, time, open: (panel) => tabs.open(panel), actions: new Actions(), axis: new TimeAxis(time) };
   context.curves = new CurveChoice(sources, thresholds, time);
@@ -94,7 +93,7 @@ export function startPage({ live, commands }) {
     [at("log"), new LogView(at("log"), context, log)],
     [at("when"), new TimeView(at("when"), context)],
     [at("lanes"), new LanesView(at("lanes"), context, { lanes, minds, messages })],
-    [at("curves"), new CurvesView(at("curves"), context, { sources, thresholds, refusals, log, minds })],
+    [at("curves"), new CurvesView(at("curves"), context, { sources, thresholds, log })],
     [at("timeline"), new TimelineView(at("timeline"), context, log)],
   ];
 
