@@ -184,7 +184,6 @@ async def test_marks_are_reachable_by_keyboard_and_have_texts() -> None:
         assert (await page.evaluate(label)).startswith("0:04.0 failure: bumped into a wall")
         await page.press("Enter")
         await page.wait_for("document.querySelector('#now').textContent === '0:04.0'")
-        assert await page.texts("footer .legend li") == ["failure", "docked"]
 
 
 @needs_chromium

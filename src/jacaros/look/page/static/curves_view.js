@@ -1,6 +1,7 @@
 import { CurveDrawing } from "./curve_drawing.js";
 import { CurveScale, valueAt } from "./curve_scale.js";
 import { button, clock, element, isDark, setText } from "./elements.js";
+import { markLine } from "./happenings.js";
 import { paced } from "./paced.js";
 import { robotColor } from "./palette.js";
 import { Series } from "./series.js";
@@ -89,7 +90,7 @@ export class CurvesView {
     shown.forEach((source, i) => Object.assign(this.curves[i], { series: this.seriesOf(source), lines: this.thresholds.of(source) }));
     const scales = { left: this.scaleOf("left", bottom), right: this.scaleOf("right", bottom) };
     drawing.scale(scales.left, "left");
-    this.marks = marksIn(log.marks, axis);
+    this.marks = log.marksIn(axis.from, axis.to, NEAR * axis.grain);
     for (const mark of this.marks) drawing.mark(mark);
     drawing.within(() => this.drawCurves(drawing, scales));
     drawing.scale(scales.right, "right");
@@ -142,7 +143,7 @@ export class CurvesView {
 
   tellAt(x) {
     const t = this.axis.t(x), mark = this.markAt(x);
-    if (mark) return `${clock(mark.t)} ${mark.text}${mark.more ? `, and ${mark.more} more` : ""}`;
+    if (mark) return markLine(mark);
     return [clock(t), ...this.choice.shown.map((source) => `${source.title} ${valueText(source, t)}`)].join("  ");
   }
 }
@@ -156,19 +157,4 @@ function magnitude(series) {
 function valueText(source, t) {
   const value = valueAt(source, t);
   return Number.isNaN(value) ? "–" : `${Number(value.toFixed(Math.abs(value) < 10 ? 2 : 1))} ${source.unit}`.trim();
-}
-
-/** The marks in view; those of one sort that are near each other are one. */
-function marksIn(marks, axis) {
-  const found = [], last = new Map();
-  for (const mark of marks) {
-    if (!axis.has(mark.t)) continue;
-    const near = last.get(mark.sort);
-    if (near && (mark.t - near.t) < NEAR * axis.grain) near.more += 1;
-    else {
-      last.set(mark.sort, { ...mark, more: 0 });
-      found.push(last.get(mark.sort));
-    }
-  }
-  return found;
 }

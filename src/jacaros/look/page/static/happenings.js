@@ -1,3 +1,5 @@
+import { clock } from "./elements.js";
+
 const spaced = (name) => String(name ?? "").replaceAll("_", " ");
 
 /** Events that people read, in words. */
@@ -21,8 +23,8 @@ const WORDS = {
 
 const FAILURES = new Set(["bump", "collision", "fault", "fell", "battery_empty", "command_timeout"]);
 
-/** The sorts of marks on the timeline: class, and name in the legend. */
-export const SORTS = { failure: "failure", handled: "failure that a plan handled", task: "task done", docked: "docked", intervention: "your change", pause: "paused" };
+/** The sorts of marks: class, and name. */
+const SORTS = { failure: "failure", handled: "failure that a plan handled", task: "task done", docked: "docked", intervention: "your change", pause: "paused" };
 
 /** An event in words, undefined when people do not read it. */
 export function inWords(event, data, severalRobots) {
@@ -48,6 +50,9 @@ export function toneOf(event, { level, text, code }) {
   if (event !== "log" || level === "info") return undefined;
   return level === "error" || text.includes("has no plan for its failure") ? "failure" : "warning";
 }
+
+/** A mark of `Log.marksIn` in words. */
+export function markLine({ t, sort, text, more, until }) { return `${clock(t)} ${SORTS[sort]}: ${text}${more ? `, and ${more} more until ${clock(until)}` : ""}`; }
 
 /** The text of a mark. */
 export function markText(event, data, severalRobots) {

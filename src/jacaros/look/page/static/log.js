@@ -34,6 +34,21 @@ export class Log {
     if (this.marks.length > MARKS) this.marks.splice(0, MARKS >> 2);
   }
 
+  /** The marks from time `from` to `to`; those of one sort that are within `near` seconds are one, with `more` others up to `until`. */
+  marksIn(from, to, near) {
+    const found = [], last = new Map();
+    for (const { t, sort, text, leads: where } of this.marks) {
+      if (t < from || t > to) continue;
+      const mark = last.get(sort);
+      if (mark && t - mark.t < near) Object.assign(mark, { more: mark.more + 1, until: t });
+      else {
+        last.set(sort, { t, sort, text, leads: where, more: 0 });
+        found.push(last.get(sort));
+      }
+    }
+    return found;
+  }
+
   enter(entry) {
     this.times.push(entry.t);
     this.entries.push(entry);

@@ -1,12 +1,12 @@
 import { button, clock, element, setText } from "./elements.js";
-import { SORTS } from "./happenings.js";
+import { markLine } from "./happenings.js";
 
 const SPEEDS = [0.5, 1, 2, 5, 10, 30, 100];
 const NEAR = 7;  // pixels: marks of one sort that are nearer become one
 const LONGEST = 45;  // seconds that a replay lasts at the speed it begins with, if one is fast enough
 const PLAY = "▶", PAUSE = "❚❚";
 
-/** Time: slider, marks with a legend, play and pause, speed, and the way back to a live run. */
+/** Time: slider, marks, play and pause, speed, and the way back to a live run. */
 export class TimelineView {
   constructor(root, context, log) {
     Object.assign(this, { root, log, time: context.time, axis: context.axis, run: context.run, selection: context.selection });
@@ -36,11 +36,9 @@ export class TimelineView {
     this.speed.id = "speed";
     for (const speed of SPEEDS) this.speed.append(new Option(speed === 0.5 ? "½×" : `${speed}×`, String(speed)));
     this.speedLabel = element("label", "speed", "Speed ", this.speed);
-    this.legend = element("ul", "legend");
     this.range = element("div", "range");
     const track = element("div", "track", this.marks, this.slider, element("div", "ranges", this.range), this.tip);
-    this.root.append(this.play, this.onAir, element("div", "clock", this.now, " ", this.end), track, this.live, this.speedLabel,
-      this.legend);
+    this.root.append(this.play, this.onAir, element("div", "clock", this.now, " ", this.end), track, this.live, this.speedLabel);
   }
 
   listen() {
@@ -91,17 +89,13 @@ export class TimelineView {
     const moved = Math.abs(end - this.drawn.end) * width > Math.max(1, end);
     if (!moved && length === this.drawn.length && width === this.drawn.width) return;
     this.drawn = { end, length, width };
-    const groups = this.run.end > 0 ? grouped(this.log.marks, width / this.run.end) : [];
     const focused = this.marks.contains(document.activeElement) ? Number(document.activeElement.dataset.t) : null;
-    this.marks.replaceChildren(...groups.map((group, index) => this.mark(group, index === 0)));
+    this.marks.replaceChildren(...(end > 0 ? this.log.marksIn(0, end, NEAR * end / width) : []).map((mark, index) => this.mark(mark, index === 0)));
     if (focused !== null) this.marks.querySelector(`[data-t="${focused}"]`)?.focus();
-    this.showLegend();
   }
 
-  mark(group, first) {
-    const [{ t, sort, text, leads }] = group;
-    const more = group.length > 1 ? `, and ${group.length - 1} more until ${clock(group[group.length - 1].t)}` : "";
-    const told = `${clock(t)} ${SORTS[sort]}: ${text}${more}`;
+  mark(mark, first) {
+    const { t, sort, leads } = mark, told = markLine(mark);
     const made = button(`mark ${sort}`, () => {
       this.time.go(t);
       if (leads) this.selection.choose(leads);
@@ -122,17 +116,6 @@ export class TimelineView {
     this.tip.style.left = `${Math.max(half, Math.min(width - half, mark.offsetLeft))}px`;
   }
 
-  showLegend() {
-    const sorts = Object.keys(SORTS).filter((sort) => this.log.marks.some((mark) => mark.sort === sort));
-    if (sorts.join() === this.sorts) return;
-    this.sorts = sorts.join();
-    this.legend.replaceChildren(...sorts.map((sort) => {
-      const sample = element("i", `mark ${sort}`);
-      sample.setAttribute("aria-hidden", "true");
-      return element("li", "", sample, SORTS[sort]);
-    }));
-  }
-
   press(event) {
     const marks = [...this.marks.children], at = marks.indexOf(document.activeElement);
     const to = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: marks.length - 1 }[event.key];
@@ -141,18 +124,4 @@ export class TimelineView {
     event.stopPropagation();
     marks[Math.min(marks.length - 1, Math.max(0, to))].focus();
   }
-}
-
-/** Marks in the order of time, those of one sort that are near each other as one group. */
-function grouped(marks, scale) {
-  const groups = [], last = new Map();
-  for (const mark of marks) {
-    const group = last.get(mark.sort);
-    if (group && (mark.t - group[0].t) * scale < NEAR) group.push(mark);
-    else {
-      last.set(mark.sort, [mark]);
-      groups.push(last.get(mark.sort));
-    }
-  }
-  return groups;
 }
