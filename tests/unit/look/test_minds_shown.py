@@ -173,15 +173,15 @@ async def test_a_thousand_agents_are_listed_without_lag() -> None:
 
 
 @needs_chromium
-async def test_messages_are_a_sequence_chart() -> None:
+async def test_messages_are_a_list_that_leads_to_their_causes() -> None:
     sent = {"id": 90, "from": "guard", "to": "cook", "performative": "tell", "content": "low(12)"}
     async with shown([*RECORDS, (11.0, "message", {**sent, "state": "sent"})]) as page:
         await page.click("#tab-messages")
-        await page.wait_for("document.querySelector('.arrow')")
-        assert await page.texts(".chart-head button") == ["guard", "cook"]
-        label = "document.querySelector('.arrow').getAttribute('aria-label')"
+        await page.wait_for("document.querySelector('.message')")
+        assert await page.texts(".message .said") == ["tell low(12)"]
+        label = "document.querySelector('.message').getAttribute('aria-label')"
         assert await page.evaluate(label) == "0:11.0 guard to cook: tell low(12), not read yet"
-        await page.click(".arrow")
+        await page.click(".message")
         await page.wait_for(
             "document.querySelector('.asked')?.innerText === 'message from guard to cook: tell low(12)'"
         )
