@@ -161,3 +161,40 @@ async def test_the_pointer_reads_values(key: str) -> None:
         await page.wait_for("document.querySelector('.plot .tip').checkVisibility()")
         expected = {"belief bob battery 0": "bob:battery 12 %", "robot r1 x": "r1.x 3.99 m"}
         assert expected.get(key, "a:pose.3 7") in await page.text(".plot .tip"), json.dumps(key)
+
+
+SEGMENTS = """(() => {
+  const { prototype } = CanvasRenderingContext2D, { moveTo, lineTo, fillText } = prototype;
+  let last = NaN;
+  window.steepest = 0;
+  window.texts = {};
+  prototype.moveTo = function (x, y) { last = y; return moveTo.call(this, x, y); };
+  prototype.lineTo = function (x, y) {
+    if (this.canvas.parentElement?.matches('.plot')) window.steepest = Math.max(window.steepest, Math.abs(y - last) || 0);
+    if (!Number.isNaN(y)) last = y;
+    return lineTo.call(this, x, y);
+  };
+  prototype.fillText = function (text, x, y) {
+    if (this.canvas.parentElement?.matches('.plot')) window.texts[text] = x;
+    return fillText.call(this, text, x, y);
+  };
+  document.querySelector('#theme').click();
+})()"""
+
+
+@needs_chromium
+async def test_a_yaw_is_broken_at_half_a_turn_and_numbers_on_the_right_have_a_margin() -> None:
+    recorder = Recorder()
+    recorder.world(WORLD)
+    for second in range(41):
+        yaw = (second * 0.2 + 3) % 6.28 - 3.14
+        recorder.frame(float(second), [RobotView("r1", second * 0.1, 1.0, yaw, 90.0)])
+    recorder.close()
+    async with replayed(recorder.recording, at=30.0, more="&curves=robot r1 yaw;robot r1 x") as page:
+        await page.evaluate(SEGMENTS)
+        metres = "Object.entries(window.texts).find(([text]) => text.endsWith(' m'))"
+        await page.wait_for(metres)
+        width = await page.evaluate("document.querySelector('.plot').clientWidth")
+        assert width - 54 < (await page.evaluate(metres))[1] < width - 30
+        height = await page.evaluate("document.querySelector('.plot').clientHeight")
+        assert 0 < await page.evaluate("window.steepest") < height / 3

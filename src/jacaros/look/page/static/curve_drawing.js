@@ -1,6 +1,8 @@
 import { themeColor } from "./elements.js";
 
 const DASHES = [5, 4];
+const HALF_TURN = 180;  // degrees: from 180 to -180 is no way
+const PLACES = 12, STAY = 8, MANY = 40;  // of labels of thresholds: places along the line, and parts of curves that a better one saves
 const MARKS = {
   failure: ["▲", "bad"], handled: ["△", "bad"], task: ["●", "accent"], docked: ["■", "dock"], intervention: ["◆", "person"], pause: ["‖", "muted"],
 };
@@ -8,7 +10,7 @@ const MARKS = {
 /** Draws curves, their axes and thresholds, and marks, with a pen on a canvas. */
 export class CurveDrawing {
   constructor(pen, axis, { top, bottom, end }) {
-    Object.assign(this, { pen, axis, top, bottom, end });
+    Object.assign(this, { pen, axis, top, bottom, end, lines: [] });
     pen.font = "11px system-ui, sans-serif";
     pen.textBaseline = "middle";
     pen.lineJoin = "bevel";
@@ -20,25 +22,14 @@ export class CurveDrawing {
   scale(scale, side) {
     if (!scale) return;
     const { pen, axis } = this, isLeft = side === "left";
-    pen.textAlign = "right";
+    pen.textAlign = isLeft ? "right" : "left";
     scale.ticks.forEach((value, n) => {
-      const y = Math.round(scale.y(value)), last = n === scale.ticks.length - 1;
+      const y = Math.round(scale.y(value)), unit = scale.unit && n === scale.ticks.length - 1 ? ` ${scale.unit}` : "";
       pen.fillStyle = themeColor("grid");
       if (isLeft) pen.fillRect(axis.left, y, axis.width, 1);
-      this.label(`${scale.text(value)}${last && scale.unit ? ` ${scale.unit}` : ""}`, isLeft ? axis.left - 6 : this.right - 2, y, themeColor("muted"), !isLeft);
+      pen.fillStyle = themeColor("muted");
+      pen.fillText(scale.text(value) + unit, isLeft ? axis.left - 6 : this.right + 6, y);
     });
-  }
-
-  /** A text; over the plot it has a halo in the colour of the paper. */
-  label(text, x, y, color, hasHalo = true) {
-    const { pen } = this;
-    if (hasHalo) {
-      pen.lineWidth = 3;
-      pen.strokeStyle = themeColor("surface");
-      pen.strokeText(text, x, y);
-    }
-    pen.fillStyle = color;
-    pen.fillText(text, x, y);
   }
 
   /** Draw only in the plot. */
@@ -57,11 +48,13 @@ export class CurveDrawing {
     // A line that is one pixel wide and on whole pixels is drawn ten times as fast.
     const isDense = length > 2 * axis.width, x = (t) => (isDense ? Math.round(axis.x(t)) + 0.5 : axis.x(t));
     for (let i = 0; i < length; i += 2) {
+      if (source.unit === "°" && Math.abs(points[i + 1] - points[i - 1]) * factor > HALF_TURN) line.push(x(points[i]), NaN);
       // The value of a step holds until the next one.
       if (source.isStep && i) line.push(x(points[i]), line.at(-1));
       line.push(x(points[i]), scale.y(points[i + 1] * factor));
     }
     if (source.isStep && points[length - 2] >= source.track.times.at(-1)) line.push(x(this.end), line.at(-1));
+    this.lines.push(line);
     this.line(line, color, dashes, isDense || dashes.length ? 1 : 1.5);
   }
 
@@ -90,9 +83,38 @@ export class CurveDrawing {
     return value >= scale.low && value <= scale.high ? y : NaN;
   }
 
-  thresholdLabel(text, y, color) {
-    this.pen.textAlign = "left";
-    this.label(text, this.axis.left + 6, y - 7 < this.top + 4 ? y + 8 : y - 7, color);
+  /** Write the label of a threshold at the height `y` where it hides the least; it stays at its place in `last` unless another is much better. */
+  thresholdLabel(text, y, color, last) {
+    const { pen, axis } = this, width = pen.measureText(text).width + 8, step = Math.max(0, axis.width - width - 8) / (PLACES - 1), found = [];
+    for (const middle of [y - 8, y + 9]) {
+      for (let n = 0; n < PLACES && middle > this.top && middle < this.bottom; n++) {
+        const x = axis.left + 4 + n * step, box = [x, middle - 7, x + width, middle + 7], place = `${n} ${middle < y}`;
+        found.push({ x, box, middle, place, cost: this.hiddenBy(box) - (last.get(text) === place ? STAY : 0) });
+      }
+    }
+    if (!found.length) return;
+    const { x, box: [left, top, right, bottom], middle, place } = found.reduce((best, each) => (each.cost < best.cost ? each : best));
+    last.set(text, place);
+    for (let n = 0; n < MANY; n++) this.lines.push([left, top, right, bottom]);  // other labels go elsewhere
+    pen.globalAlpha = 0.8;
+    pen.fillStyle = themeColor("surface");
+    pen.fillRect(left, top, width, 14);
+    pen.globalAlpha = 1;
+    pen.textAlign = "left";
+    pen.fillStyle = color;
+    pen.fillText(text, x + 4, middle);
+  }
+
+  /** How many parts of curves are in a box. */
+  hiddenBy([left, top, right, bottom]) {
+    let count = 0;
+    for (const line of this.lines) {
+      for (let i = 2; i < line.length; i += 2) {
+        const [x, y, u, v] = [line[i - 2], line[i - 1], line[i], line[i + 1]];
+        if (x < right && u > left && Math.min(y, v) < bottom && Math.max(y, v) > top) count += 1;
+      }
+    }
+    return count;
   }
 
   /** A line down the plot for each mark, with its sign on top. */

@@ -11,13 +11,14 @@ import { TimePointer } from "./time_pointer.js";
 
 const LEAST = 60;  // pixels: the height of the plot
 const TOP = 14;  // pixels above it, for marks
+const SCALE = 54;  // pixels for the numbers of the right axis
 const NEAR = 6;  // pixels between the pointer and a mark
 
 /** Numbers over time: a chip for each, and a plot with two axes, thresholds of contexts, and marks of events. */
 export class CurvesView {
   constructor(root, context, { sources, thresholds, log }) {
     Object.assign(this, { root, context, sources, thresholds, log, axis: context.axis, choice: context.curves });
-    this.series = new Map();
+    Object.assign(this, { series: new Map(), places: new Map() });
     this.chips = element("ul", "chips");
     this.more = element("select", "more");
     this.more.setAttribute("aria-label", "Add a curve");
@@ -43,6 +44,8 @@ export class CurvesView {
       this.stamp = stamp;
       this.curves = this.curvesOf(shown);
       this.fill(shown);
+      this.axis.right = this.curves.some(({ side }) => side === "right") ? SCALE : 12;
+      this.context.time.notify();  // lanes have the same margin
     }
     this.showValues(shown, t);
     this.draw(shown);
@@ -111,7 +114,7 @@ export class CurvesView {
       }
     }
     for (const curve of curves) drawing.curve(curve, scales[curve.side], curve.color);
-    for (const label of labels) drawing.thresholdLabel(...label);
+    for (const label of labels) drawing.thresholdLabel(...label, this.places);
   }
 
   seriesOf(source) {

@@ -29,7 +29,7 @@ export class LanesDrawing {
     pen.translate(0, -scene.top);
     this.drawGrid(rows);
     pen.beginPath();
-    pen.rect(axis.left, scene.top, axis.width + 20, scene.height);
+    pen.rect(axis.left, scene.top, axis.width + 8, scene.height);
     pen.save();
     pen.clip();
     for (const row of seen) if (row.bars) this[row.isMarks ? "drawMarks" : "drawBars"](row);

@@ -52,7 +52,7 @@ export class LanesView {
   show() {
     const { axis, root, lanes, context } = this, { clientWidth: width, clientHeight: height, scrollTop: top } = root, { selection, run } = context;
     this.filter.hidden = lanes.agents.size < MANY;
-    const stamp = [axis.from, axis.to, width, height, top, lanes.version, this.messages.all.length, JSON.stringify(selection.current), isDark(),
+    const stamp = [axis.from, axis.to, axis.width, width, height, top, lanes.version, this.messages.all.length, JSON.stringify(selection.current), isDark(),
       this.filter.value, [...this.open], this.current?.row.key, this.current?.index].join(" ");
     if (stamp === this.stamp || height < 2) return;
     this.stamp = stamp;

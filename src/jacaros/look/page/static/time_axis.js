@@ -7,12 +7,12 @@ const STEPS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 30
 /**
  * The range of time that lanes and curves show.
  *
- * `from`, `to`: seconds. `left`: pixels before the range, for labels; `width`: pixels of the range. A recording is shown
+ * `from`, `to`: seconds. `left`: pixels before the range, and `right` after it, for labels; `width`: pixels of the range. A recording is shown
  * whole, a live run with its last two minutes, until you zoom or pan.
  */
 export class TimeAxis {
   constructor(time) {
-    Object.assign(this, { time, from: 0, to: 1, left: 120, width: 1, mode: "auto", listeners: new Set() });
+    Object.assign(this, { time, from: 0, to: 1, left: 120, right: 12, width: 1, mode: "auto", listeners: new Set() });
     this.seen = 0;  // the moment at the last update
     this.wasLive = false;
   }

@@ -1,7 +1,6 @@
 import { button, clock, element, isDark, themeColor } from "./elements.js";
 import { fitted } from "./time_canvas.js";
 
-const RIGHT = 12;  // pixels after the range
 const RULER = 18;  // pixels
 const KEYS = { "+": 1.5, "=": 1.5, "-": 1 / 1.5, "_": 1 / 1.5 };
 
@@ -36,13 +35,13 @@ export class TimeView {
   show(t) {
     const { axis, body } = this, { clientWidth } = body;
     axis.left = Math.round(Math.min(130, clientWidth * 0.22));
-    axis.width = Math.max(10, clientWidth - axis.left - RIGHT);
+    axis.width = Math.max(10, clientWidth - axis.left - axis.right);
     axis.update(t);
     const x = axis.x(t);
     this.follow.hidden = !this.time.live || axis.mode === "auto";
     this.now.hidden = !axis.has(t);
     this.now.style.transform = `translateX(${x.toFixed(1)}px)`;
-    const stamp = `${axis.from} ${axis.to} ${clientWidth} ${isDark()}`;
+    const stamp = `${axis.from} ${axis.to} ${axis.width} ${isDark()}`;
     if (stamp === this.stamp) return;
     this.stamp = stamp;
     this.draw(clientWidth);
