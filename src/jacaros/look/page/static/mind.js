@@ -85,9 +85,6 @@ export class Mind {
   /** Number of deliberations up to time `t`. */
   decisionsAt(t) { return indexAt(this.decided, t) + 1; }
 
-  /** When a line ran first; undefined when it never did. */
-  firstRun(file, line) { return this.ran.get(file)?.get(line); }
-
   runLine(t, file, line) {
     if (!file || !line) return;
     if (!this.ran.has(file)) this.ran.set(file, new Map());

@@ -19,11 +19,11 @@ export function keyed(key, node) {
   return node;
 }
 
-/** Let the arrow keys, Home and End move the focus among the elements below `root` that `selector` finds. */
-export function moveByArrows(root, selector) {
+/** Let two arrow keys, Home and End move the focus among the elements below `root` that `selector` finds. */
+export function moveByArrows(root, selector, next = "ArrowDown", before = "ArrowUp") {
   root.addEventListener("keydown", (event) => {
     const all = [...root.querySelectorAll(selector)].filter((each) => each.checkVisibility()), at = all.indexOf(document.activeElement);
-    const to = { ArrowDown: at + 1, ArrowUp: at - 1, Home: 0, End: all.length - 1 }[event.key];
+    const to = { [next]: at + 1, [before]: at - 1, Home: 0, End: all.length - 1 }[event.key];
     if (at < 0 || to === undefined || event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();
     event.stopPropagation();

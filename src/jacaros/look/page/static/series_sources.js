@@ -2,7 +2,7 @@ import { Track } from "./track.js";
 
 const LIMIT = 1000000;  // values of one source that are kept
 const IN_ALL = 5000000;
-const NUMBER = /^\s*-?\d/, NESTED = /["([]/;
+const NUMBER = /^\s*-?\d/, QUOTED = /"(?:[^"\\]|\\.)*"/g, NESTED = /\([^()[\]]*\)|\[[^()[\]]*\]/;
 
 /**
  * The numbers that records contain, each over time: arguments of beliefs, values of properties, states of robots, and what
@@ -168,21 +168,7 @@ function divided(text) {
 
 /** The arguments of a literal, NaN for those that are not numbers. */
 function numbersIn(literal, { length }) {
-  const written = literal.slice(length + 1, -1), parts = NESTED.test(written) ? topLevel(written) : written.split(",");
-  return parts.map((part) => (NUMBER.test(part) ? Number(part) : NaN));
-}
-
-/** Split arguments at the commas that are not in strings, lists or structures. */
-function topLevel(written) {
-  const plain = written.replace(/"(?:[^"\\]|\\.)*"/g, (quoted) => "_".repeat(quoted.length)), parts = [];
-  let depth = 0, start = 0;
-  for (let i = 0; i <= plain.length; i++) {
-    if (plain[i] === "(" || plain[i] === "[") depth += 1;
-    else if (plain[i] === ")" || plain[i] === "]") depth -= 1;
-    else if (i === plain.length || (plain[i] === "," && !depth)) {
-      parts.push(plain.slice(start, i));
-      start = i + 1;
-    }
-  }
-  return parts;
+  let written = literal.slice(length + 1, -1).replace(QUOTED, "_");
+  while (NESTED.test(written)) written = written.replace(NESTED, "_");  // commas in strings, lists and structures do not count
+  return written.split(",").map((part) => (NUMBER.test(part) ? Number(part) : NaN));
 }

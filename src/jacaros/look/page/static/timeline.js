@@ -1,5 +1,6 @@
 import { button, clock, element, setText } from "./elements.js";
 import { markLine } from "./happenings.js";
+import { moveByArrows } from "./refill.js";
 
 const SPEEDS = [0.5, 1, 2, 5, 10, 30, 100];
 const NEAR = 7;  // pixels: marks of one sort that are nearer become one
@@ -44,7 +45,7 @@ export class TimelineView {
   listen() {
     this.slider.addEventListener("input", () => this.time.go(Number(this.slider.value)));
     this.speed.addEventListener("change", () => { this.time.speed = Number(this.speed.value); });
-    this.marks.addEventListener("keydown", (event) => this.press(event));
+    moveByArrows(this.marks, ".mark", "ArrowRight", "ArrowLeft");
   }
 
   show(t) {
@@ -114,14 +115,5 @@ export class TimelineView {
     this.tip.hidden = false;
     const width = this.marks.clientWidth, half = this.tip.offsetWidth / 2;
     this.tip.style.left = `${Math.max(half, Math.min(width - half, mark.offsetLeft))}px`;
-  }
-
-  press(event) {
-    const marks = [...this.marks.children], at = marks.indexOf(document.activeElement);
-    const to = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: marks.length - 1 }[event.key];
-    if (at < 0 || to === undefined) return;
-    event.preventDefault();
-    event.stopPropagation();
-    marks[Math.min(marks.length - 1, Math.max(0, to))].focus();
   }
 }
