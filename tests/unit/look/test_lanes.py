@@ -235,6 +235,7 @@ async def test_the_arrow_keys_move_from_bar_to_bar() -> None:
                 await page.press(key)
             assert (await page.evaluate("document.activeElement.textContent")).startswith(words)
         picture = "document.querySelector('#lanes canvas').toDataURL()"
+        await page.evaluate("new Promise((done) => requestAnimationFrame(() => done(true)))")  # the outline
         folded = await page.evaluate(picture)
         await page.press("o")
         await page.wait_for(f"{picture} !== {folded!r}")
