@@ -2,6 +2,7 @@ import { themeColor } from "./elements.js";
 
 const DASHES = [5, 4];
 const HALF_TURN = 180;  // degrees: from 180 to -180 is no way
+const COARSE = 1000;  // numbers of a line that are looked at for a place
 const PLACES = 12, STAY = 8, MANY = 40;  // of labels of thresholds: places along the line, and parts of curves that a better one saves
 const MARKS = {
   failure: ["▲", "bad"], handled: ["△", "bad"], task: ["●", "accent"], docked: ["■", "dock"], intervention: ["◆", "person"], pause: ["‖", "muted"],
@@ -109,8 +110,9 @@ export class CurveDrawing {
   hiddenBy([left, top, right, bottom]) {
     let count = 0;
     for (const line of this.lines) {
-      for (let i = 2; i < line.length; i += 2) {
-        const [x, y, u, v] = [line[i - 2], line[i - 1], line[i], line[i + 1]];
+      const step = 2 * Math.ceil(line.length / COARSE);
+      for (let i = step; i < line.length; i += step) {
+        const x = line[i - step], y = line[i - step + 1], u = line[i], v = line[i + 1];
         if (x < right && u > left && Math.min(y, v) < bottom && Math.max(y, v) > top) count += 1;
       }
     }
