@@ -61,6 +61,17 @@ def test_goals_fail_or_recover_by_their_failure_plans():
     assert goals_at_the_end("!a. +!a <- .fail. -!a : false.") == ["failed !a"]
 
 
+@pytest.mark.parametrize("step", [".wait(400)", ".suspend(tour(N))"])
+def test_goals_that_failed_below_a_failure_plan_are_not_pursued_again(step):
+    program = f"""
+        !tour(1). +!tour(N) <- !visit(N). +!visit(N) <- !deep(N). +!deep(_) <- .wait(100); .fail.
+        -!tour(N) <- {step}; .print(done).
+        !other. +!other <- .wait(1000); .resume(tour(1)).
+    """
+    ends = goals_at_the_end(program)
+    assert ends == ["recovered !tour(1)", "achieved !other", "failed !visit(1)", "failed !deep(1)"]
+
+
 def test_the_goals_of_branches_end_with_them():
     program = "!a(1). +!a(N) <- !b(N) ||| !c(X); .wait(10). +!b(_) <- .wait(20). +!c(3) <- .wait(5)."
     assert goals_at_the_end(program) == ["achieved !a(1)", "dropped !b(1)", "achieved !c(3)"]

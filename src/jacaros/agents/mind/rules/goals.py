@@ -234,7 +234,7 @@ def suspend_intention(agent: Circumstance, intention: Intention, reason: Term = 
     agent.incoming.called = True  # an intention that suspends itself ends its turn
     agent.take_out(intention)
     if agent.features.meta:
-        for frame in intention.frames:
+        for frame in reversed([*meta_events.live_frames(intention)]):
             meta_events.frame_state(agent, intention, frame, "suspended", reason)
     if reason is BY_SUSPEND:
         for need in needs.of(agent, intention):
@@ -265,7 +265,7 @@ def resume_intention(agent: Circumstance, intention: Intention, by: Term = _BY_R
         return
     intention.suspended = None
     if agent.features.meta:
-        for frame in intention.frames:
+        for frame in reversed([*meta_events.live_frames(intention)]):
             meta_events.frame_state(agent, intention, frame, "resumed", by)
     if by is _BY_RESUME:
         for need in needs.of(agent, intention):

@@ -3,7 +3,7 @@
 Also events about the agent itself: it falls asleep, awakes, or is about to be shut down.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from jacaros.agents.mind.rules.failure_reason import FailureReason
 from jacaros.agents.mind.state.act import MindObserver
@@ -115,10 +115,25 @@ def post_new_goal(agent: Circumstance, event: Event) -> None:
 
 def top_goal_state(agent: Circumstance, intention: Intention, state: str, reason: Term = _NO_REASON) -> None:
     """Notify plans and the observer of a state change of an intention's topmost goal."""
-    for frame in reversed(intention.frames):
+    for frame in live_frames(intention):
         if frame[GOAL][0].kind and not frame[GOAL][0].failing:
             frame_state(agent, intention, frame, state, reason)
             return
+
+
+def live_frames(intention: Intention) -> Iterator[Frame]:
+    """Yield the frames of the pursued goals, the top one first.
+
+    Failed goals stay on the stack below the plan that handles the failure. For such a plan, the frame of the goal that
+    it handles is yielded, or its own if that goal failed without a frame.
+    """
+    index, handlers = len(intention.frames) - 1, len(intention.handlers)
+    while index >= 0:
+        if intention.frames[index][GOAL][0].failing and handlers:
+            handlers -= 1
+            index = intention.handlers[handlers]
+        yield intention.frames[index]
+        index -= 1
 
 
 def _insert(agent: Circumstance, event: Event) -> None:
