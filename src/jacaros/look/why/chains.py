@@ -47,7 +47,8 @@ def _without_rounds(links: list[Fact]) -> list[Fact]:
         kept += links[at : at + size]
         at += size * rounds
         if rounds > 1:
-            kept.append(Fact("note", f"{rounds - 1} earlier rounds like this", links[at - 1].t))
+            since = "" if (t := links[at - 1].t) is None else f", since {seconds(t)}"
+            kept.append(Fact("note", f"{rounds - 1} earlier rounds like this{since}"))
     return kept
 
 
