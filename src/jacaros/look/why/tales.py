@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 from jacaros.look.records.records import Data, is_well_formed
 from jacaros.look.why.about_now import ending_step
@@ -160,19 +160,17 @@ class Teller:
             "believed": self._believed,
             "fault": self._fault,
             "property": self._property,
-            "intervention": self._intervention,
         }
 
     def take(self, t: float, event: str, data: Data) -> None:
         """Take the next record."""
         is_other = event == "property" and data.get("name") != "question"
-        if is_other or not (event in self._take or event in _WORLD) or not is_well_formed(event, data):
+        if is_other or not (event in self._take or event in _KINDS) or not is_well_formed(event, data):
             return
         if event in self._take:
             self._take[event](t, data)
         else:
-            rank, level, text = _WORLD[event]
-            self._tell(event, rank, t, text.format_map(data), level, robot=str(data.get("robot") or ""))
+            self._tell(event, t, _KINDS[event].text.format_map(data), robot=str(data.get("robot") or ""))
 
     def tales(self, past: Past) -> list[Tale]:
         """Return all tales; *past* has the programs, and how the run ended."""
@@ -190,24 +188,11 @@ class Teller:
         setup = [each for each in pursuits[1:] if each.last - each.t < LASTING]
         return [*(each for each in self._tales.values() if each not in setup), self._end(past)]
 
-    def _tell(
-        self,
-        kind: str,
-        rank: Rank,
-        t: float,
-        text: str,
-        level: Level = "note",
-        who: str = "",
-        robot: str = "",
-        about: str | None = None,
-    ) -> Tale:
+    def _tell(self, kind: str, t: float, text: str, who: str = "", robot: str = "", about: str = "") -> Tale:
         """Add to the tale of a kind and a text, or *about* in its place."""
-        key = kind, text if about is None else about
-        known = self._tales.get(key)
-        if known is None:
-            known = self._tales[key] = Tale(rank, t, text, level, robot)
-        else:
-            known.count += 1
+        rank, level, _ = _KINDS[kind]
+        known = self._tales.setdefault((kind, about or text), Tale(rank, t, text, level, robot, count=0))
+        known.count += 1
         known.last = t
         if who or robot:
             known.who[who or robot] = None
@@ -239,7 +224,7 @@ class Teller:
     def _begin(self, t: float, key: Key, number: Any, goal: str) -> None:
         self._open.setdefault(key[0], set()).add(key[1])
         if key not in self._pursuits:
-            tale = self._tell("goal", Rank.ROUTINE, t, "", who=key[0], about=name_of(goal))
+            tale = self._tell("goal", t, "", key[0], about=name_of(goal))
             tale.lasts = True
             tale.goals[goal] = None
             self._pursuits[key] = _Pursuit({}, tale)
@@ -260,7 +245,7 @@ class Teller:
         pursuit = self._pursuits.get(key)
         if pursuit is not None and number == next(iter(pursuit.stack)):
             told = f"`!{name_of(pursuit.stack[number])}` was suspended"
-            self._suspended[key] = self._tell("suspended", Rank.ROUTINE, t, told, who=key[0])
+            self._suspended[key] = self._tell("suspended", t, told, key[0])
             self._suspended[key].lasts = True
 
     def _tell_suspended(self, past: Past) -> None:
@@ -288,13 +273,13 @@ class Teller:
         because, goal = reason(failure.why), [*failure.goals.values()][-1]
         told = f"`{_cut(shown(goal))}` failed: {because}; a plan handled it"
         # Goals that fail for one reason, one after the other, are one tale.
-        self._tell("handled", Rank.HANDLED, failure.t, told, "warning", key[0], about=_pattern(because))
+        self._tell("handled", failure.t, told, key[0], about=_pattern(because))
 
     def _lose(self, key: Key, failure: _Failure) -> None:
         because, goal = reason(failure.why), [*failure.goals.values()][-1]
         told = f"`{_cut(shown(goal))}` failed{f': {because}' if because else ''}"
         about = f"{name_of(goal)} {_pattern(because)}"
-        self._tell("lost", Rank.LOSS, failure.t, told, "error", key[0], about=about)
+        self._tell("lost", failure.t, told, key[0], about=about)
         self._end_intention(failure.t, key)
 
     def _intention(self, t: float, data: Data) -> None:
@@ -318,9 +303,7 @@ class Teller:
             who, text = (found[1], found[2]) if found is not None else ("", data["text"].partition("\n")[0])
             if is_loss:
                 text = f"{text.partition(_LOST)[0]}: {reason(text)}"
-            level: Level = "error" if is_loss else data["level"]
-            rank = Rank.LOSS if level == "error" else Rank.TROUBLE
-            self._tell("log", rank, t, _cut(text), level, who, about=_pattern(text))
+            self._tell("error" if is_loss else data["level"], t, _cut(text), who, about=_pattern(text))
 
     def _agent(self, t: float, data: Data) -> None:
         if data["state"] == "ended":
@@ -331,37 +314,27 @@ class Teller:
 
     def _member(self, t: float, data: Data) -> None:
         if data["state"] == "lost":
-            text = "did not answer; it is a system of the fleet"
-            self._tell("member", Rank.FAULT, t, text, "error", data["member"], about=data["member"])
+            self._tell("member", t, _KINDS["member"].text, data["member"], about=data["member"])
 
     def _fault(self, t: float, data: Data) -> None:
-        text, robot = (
-            f"fault `{data['fault']}` ({data['kind'].replace('_', ' ')})",
-            str(data.get("robot") or ""),
-        )
+        text = f"fault `{data['fault']}` ({data['kind'].replace('_', ' ')})"
         if data["state"] != "ends":
-            self._tell("fault", Rank.FAULT, t, text, "warning", robot=robot).lasts = True
+            self._tell("fault", t, text, robot=str(data.get("robot") or "")).lasts = True
         elif (begun := self._tales.get(("fault", text))) is not None:
             begun.last = t
 
     def _believed(self, t: float, data: Data) -> None:
         """Tell of a robot that is wrong about its pose. The record is repeated while it is, then once without a pose."""
         if data.get("x") is not None:
-            text = "was not where it believed to be"
-            tale = self._tell("believed", Rank.ROUTINE, t, text, robot=data["robot"])
+            tale = self._tell("believed", t, _KINDS["believed"].text, robot=data["robot"])
             tale.count, tale.lasts = 1, True
             if tale.last - tale.t >= LONG:
                 tale.rank, tale.level = Rank.TROUBLE, "warning"
 
     def _property(self, t: float, data: Data) -> None:
         """Tell of a question to a person: the values are its number, its text and the options."""
-        if data["name"] == "question" and len(data["values"] or ()) > 1:
-            self._tell(
-                "question", Rank.FAULT, t, f"a person was asked: {_cut(str(data['values'][1]))}", "warning"
-            )
-
-    def _intervention(self, t: float, data: Data) -> None:
-        self._tell("intervention", Rank.FAULT, t, f"you changed the run: {data['what']}")
+        if len(data["values"] or ()) > 1:
+            self._tell("property", t, f"a person was asked: {_cut(str(data['values'][1]))}")
 
     # ---- the end
 
@@ -396,16 +369,34 @@ class Teller:
         return Tale(Rank.END, past.end, "; ".join(parts), level)
 
 
-_WORLD: Mapping[str, tuple[Rank, Level, str]] = {
-    "battery_empty": (Rank.LOSS, "error", "the battery is empty"),
-    "fell": (Rank.LOSS, "error", "fell down a cliff"),
-    "bump": (Rank.TROUBLE, "warning", "bumped into a wall, {side}"),
-    "collision": (Rank.TROUBLE, "warning", "collided with {with}, {side}"),
-    "command_timeout": (Rank.TROUBLE, "warning", "stopped, because no commands arrived"),
-    "charged": (Rank.ROUTINE, "note", "charged its battery"),
-    "task": (Rank.ROUTINE, "note", "did {task}"),
+class _Kind(NamedTuple):
+    """A kind of tales; *text* is that of a record that needs nothing else."""
+
+    rank: Rank
+    level: Level
+    text: str = ""
+
+
+_KINDS: Mapping[str, _Kind] = {
+    "goal": _Kind(Rank.ROUTINE, "note"),
+    "suspended": _Kind(Rank.ROUTINE, "note"),
+    "handled": _Kind(Rank.HANDLED, "warning"),
+    "lost": _Kind(Rank.LOSS, "error"),
+    "warning": _Kind(Rank.TROUBLE, "warning"),
+    "error": _Kind(Rank.LOSS, "error"),
+    "member": _Kind(Rank.FAULT, "error", "did not answer; it is a system of the fleet"),
+    "fault": _Kind(Rank.FAULT, "warning"),
+    "believed": _Kind(Rank.ROUTINE, "note", "was not where it believed to be"),
+    "property": _Kind(Rank.FAULT, "warning"),
+    "intervention": _Kind(Rank.FAULT, "note", "you changed the run: {what}"),
+    "battery_empty": _Kind(Rank.LOSS, "error", "the battery is empty"),
+    "fell": _Kind(Rank.LOSS, "error", "fell down a cliff"),
+    "bump": _Kind(Rank.TROUBLE, "warning", "bumped into a wall, {side}"),
+    "collision": _Kind(Rank.TROUBLE, "warning", "collided with {with}, {side}"),
+    "command_timeout": _Kind(Rank.TROUBLE, "warning", "stopped, because no commands arrived"),
+    "charged": _Kind(Rank.ROUTINE, "note", "charged its battery"),
+    "task": _Kind(Rank.ROUTINE, "note", "did {task}"),
 }
-"""Events of the world that are part of a story."""
 
 _LOST = " failed and has no plan for its failure"
 _WARNING = re.compile(r"\[([^\]]+)\] (?:warning: |error: )?(.*)")
