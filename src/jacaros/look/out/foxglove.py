@@ -2,8 +2,10 @@
 
 import math
 import re
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from heapq import merge
+from itertools import chain, count
 from typing import Any, BinaryIO, NamedTuple
 
 from jacaros.look.out.limits import limits
@@ -55,14 +57,13 @@ def _numbers(recording: Recording) -> Iterator[Message]:
     """Yield numbers, in fields ``arg1``, ``arg2`` and so on for those of beliefs and properties."""
     folders = {"belief": "beliefs", "property": "properties"}
     for t, source, owner, name, values in samples(recording):
-        if source == "robot":
-            fields = dict(zip(ROBOT_FIELDS, values or (), strict=False))
-            yield Message(t, _topic("robots", name), "jacaros.Robot", fields)
-        elif source in folders:
+        fields = ROBOT_FIELDS if source == "robot" else (f"arg{place}" for place in count(1))
+        numbers = {field: each for field, each in zip(fields, values or (), strict=False) if each is not None}
+        if source == "robot" and "x" in numbers:
+            yield Message(t, _topic("robots", name), "jacaros.Robot", numbers)
+        elif source in folders and numbers:
             topic = _topic(folders[source], owner, name)
-            numbers = {f"arg{place}": each for place, each in enumerate(values or (), 1) if each is not None}
-            if numbers:
-                yield Message(t, topic, f"jacaros{topic.replace('/', '.')}", numbers)
+            yield Message(t, topic, f"jacaros{topic.replace('/', '.')}", numbers)
 
 
 class _Lanes:
@@ -100,11 +101,8 @@ class _Lanes:
                 yield from self._end(t, data["id"], reason if data["state"] == "failed" else "")
 
     def _show(self, t: float, key: object, first: str, now: str) -> Message:
-        topic, number, taken = self._topics.get(key, first), 1, {*self._topics.values()}
-        while key not in self._topics and topic in taken:
-            number += 1
-            topic = f"{first}_{number}"
-        self._topics[key] = topic
+        taken, names = {*self._topics.values()}, chain((first,), (f"{first}_{number}" for number in count(2)))
+        topic = self._topics.setdefault(key, next(each for each in names if each not in taken))
         return Message(t, topic, "jacaros.Lane", {"now": now})
 
     def _end(self, t: float, key: object, failure: str) -> Iterator[Message]:
@@ -180,14 +178,12 @@ def layout(recording: Recording, topics: Mapping[str, str]) -> dict[str, Any]:
     ]
     charges = all_series(Recording(events=beliefs))
     compared = dict(limit for each in charges for limit in limits(recording, each, ()))
-    lanes = [each for each, schema in topics.items() if schema == "jacaros.Lane"][:_MOST_LANES]
-    robots = [each for each, schema in topics.items() if schema == "jacaros.Robot"]
+    of_schema: dict[str, list[str]] = defaultdict(list)
+    for topic, schema in topics.items():
+        of_schema[schema].append(topic)
+    lanes, robots = of_schema["jacaros.Lane"][:_MOST_LANES], of_schema["jacaros.Robot"]
+    drawn = of_schema["foxglove.FrameTransforms"] + of_schema["foxglove.LaserScan"]
     batteries = [f"{_topic('beliefs', each.owner, each.name)}.arg{each.field}" for each in charges]
-    drawn = [
-        each
-        for each, schema in topics.items()
-        if schema in ("foxglove.FrameTransforms", "foxglove.LaserScan")
-    ]
     # A number as a path is a horizontal line.
     numbers = [
         {**_path(limit.name), "label": label, "lineStyle": "dashed"} for label, limit in compared.items()

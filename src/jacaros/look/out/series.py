@@ -66,15 +66,6 @@ class Series:
         return ROBOT_FIELDS[self.field] if self.source == "robot" else _UNITS.get(self.name, "")
 
     @property
-    def full_name(self) -> str:
-        """The name that means this series only."""
-        return (
-            f"{self.name}.{self.field}"
-            if self.source == "robot"
-            else f"{self.owner}:{self.name}.{self.field}"
-        )
-
-    @property
     def changes(self) -> bool:
         """Whether it has several values."""
         return len({value for _, value in self.points if not math.isnan(value)}) > 1
@@ -100,7 +91,8 @@ def _of_events(recording: Recording) -> Iterator[Sample]:
             yield Sample(t, "property", data["artifact"].rpartition("/")[2], data["name"], values)
         elif kind == "laser":
             nearest = min(filter(None, data["ranges"]), default=None)
-            yield Sample(t, "laser", data["robot"], data["robot"], [nearest and nearest / 100.0])
+            values = [*[None] * (len(ROBOT_FIELDS) - 1), nearest and nearest / 100.0]
+            yield Sample(t, "robot", data["robot"], data["robot"], values)
 
 
 def _of_belief(t: float, agent: str, op: str, text: str) -> Iterator[Sample]:
@@ -151,19 +143,13 @@ def all_series(recording: Recording) -> list[Series]:
 
     Beliefs of which an agent has several at a time, such as the places of a map, are not one number over time.
     """
-    found: dict[tuple[str, str, str], _Fields] = {}
-    for t, source, owner, name, values in samples(recording):
-        key = ("robot" if source == "laser" else source, owner, name)
-        fields = found.get(key) or found.setdefault(key, _Fields(*key))
-        if source == "belief":
+    found: dict[tuple[str, ...], _Fields] = {}
+    for t, *key, values in samples(recording):
+        fields = found.setdefault(tuple(key), _Fields(*key))
+        if key[0] == "belief":
             fields.held = max(0, fields.held + (1 if values is not None else -1))
             fields.is_many = fields.is_many or fields.held > 1
-        if values is None:
-            fields.end(t)
-        elif source == "laser":
-            fields.take(t, ["laser"], values)
-        else:
-            fields.take(t, ROBOT_FIELDS if source == "robot" else map(str, count(1)), values)
+        fields.take(t, values)
     return [series for each in found.values() if not each.is_many for series in each.series.values()]
 
 
@@ -176,8 +162,12 @@ class _Fields:
         self.held = 0
         self.is_many = False
 
-    def take(self, t: float, fields: Iterable[str], values: Sequence[float | None]) -> None:
-        for field, value in zip(fields, values, strict=False):
+    def take(self, t: float, values: Values) -> None:
+        if values is None:
+            for series in self.series.values():
+                series.points.append((t, math.nan))
+        fields = ROBOT_FIELDS if self._key[0] == "robot" else map(str, count(1))
+        for field, value in zip(fields, values or (), strict=False):
             if value is None:
                 continue
             series = self.series.get(field) or self.series.setdefault(field, Series(*self._key, field))
@@ -185,10 +175,6 @@ class _Fields:
             if points and points[-1][0] == t and math.isnan(points[-1][1]):
                 points.pop()  # a removal at the same time was one half of a change
             points.append((t, value))
-
-    def end(self, t: float) -> None:
-        for series in self.series.values():
-            series.points.append((t, math.nan))
 
 
 def named(known: Sequence[Series], name: str) -> list[Series]:

@@ -7,9 +7,12 @@ import html
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from typing import Any, NamedTuple
 
-from jacaros.look.out.series import Series
+from jacaros.look.out.limits import limits
+from jacaros.look.out.series import Series, named
+from jacaros.look.records.recording import Recording
 from jacaros.runtime.files.texts import printable
 
 _STYLE = """
@@ -64,6 +67,16 @@ class Panel:
         around = (high - low) / 2
         near = [each for each in both[1] if low - around <= _range([each])[0] <= high + around]
         return Panel(both[0], near)
+
+
+def panel_of(recording: Recording, known: Sequence[Series], names: Iterable[str]) -> Panel:
+    """Return the panel of the series with these names, and what programs compare them with."""
+    curves = []
+    for name in names:
+        found = named(known, name)
+        curves += [(name if len(found) == 1 else f"{each.owner}:{name}", each) for each in found]
+    compared = dict(limit for _, each in curves for limit in limits(recording, each, known))
+    return Panel(curves, [*compared.items()])
 
 
 def failures(events: Iterable[tuple[float, str, Mapping[str, Any]]]) -> list[Failure]:
@@ -161,7 +174,7 @@ def _legend(panel: Panel, y: int) -> Iterator[_Entry]:
 def _panel(sheet: _Sheet, panel: Panel, legend: Sequence[_Entry], bottom: int) -> Iterator[str]:
     scale = _Scale(panel, bottom)
     for tick in scale.ticks:
-        yield _line("grid", scale.y(tick))
+        yield f'<path class="grid" d="M{_LEFT} {scale.y(tick)}H{_WIDTH - _RIGHT}"/>'
         yield _text(f"{tick:.12g}", _LEFT - 6, scale.y(tick) + 4, "end")
     if panel.units:
         units, middle = _escaped(panel.units), bottom - _HEIGHT // 2
@@ -173,10 +186,6 @@ def _panel(sheet: _Sheet, panel: Panel, legend: Sequence[_Entry], bottom: int) -
         yield f'<path class="limit" d="{_path(sheet, scale, series)}"/>'
         yield _text(label, _WIDTH - _RIGHT - 2, scale.y(series.points[-1][1]) - 4, "end", "note")
     yield f'<path class="axis" d="M{_LEFT} {bottom - _HEIGHT}V{bottom}H{_WIDTH - _RIGHT}"/>'
-
-
-def _line(kind: str, y: float) -> str:
-    return f'<path class="{kind}" d="M{_LEFT} {y}H{_WIDTH - _RIGHT}"/>'
 
 
 def _text(text: str, x: float, y: float, anchor: str = "start", kind: str = "") -> str:
@@ -212,24 +221,12 @@ def _path(sheet: _Sheet, scale: _Scale, series: Series) -> str:
 
 def _columns(sheet: _Sheet, series: Series) -> Iterator[tuple[float, list[float]]]:
     """Yield the first, least, greatest and last value in each half of a pixel."""
-    column: list[float] = []
-    at = -1.0
-    for t, value in series.points:
-        x = round(2.0 * sheet.x(t)) / 2.0
-        if x != at and column:
-            yield at, _extremes(column)
-            column = []
-        at = x
-        column.append(value)
-    if column:
-        yield at, _extremes(column)
-
-
-def _extremes(column: list[float]) -> list[float]:
-    if len(column) <= 4:
-        return column
-    known = [value for value in column if not math.isnan(value)] or column[:1]
-    return [column[0], min(known), max(known), column[-1]]
+    for x, points in groupby(series.points, key=lambda point: round(2.0 * sheet.x(point[0])) / 2.0):
+        column = [value for _, value in points]
+        if len(column) > 4:
+            known = [value for value in column if not math.isnan(value)] or column[:1]
+            column = [column[0], min(known), max(known), column[-1]]
+        yield x, column
 
 
 # ---- time

@@ -2,18 +2,12 @@
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from jacaros.runtime.cli.options import PATH, option
 from jacaros.runtime.cli.outputs import check_output, write_output
 from jacaros.runtime.cli.usage import examples, read_recording, usage_error
-
-if TYPE_CHECKING:
-    from jacaros.look.out.series import Series
-    from jacaros.look.out.svg_plot import Panel
-    from jacaros.look.records.recording import Recording
 
 
 @click.command(
@@ -47,31 +41,17 @@ def plot(run: Path, names: tuple[str, ...], output: Path, start: float, end: flo
     names in the recording, give an unknown one.
     """  # fmt: skip
     from jacaros.look.out.series import all_series
-    from jacaros.look.out.svg_plot import failures, plot_svg
+    from jacaros.look.out.svg_plot import failures, panel_of, plot_svg
 
     check_output(output, "picture")
     recording = read_recording(run)
     known = all_series(recording)
-    panels = [_panel(recording, known, each.split(",")) for each in names]
+    panels = [panel_of(recording, known, each.split(",")) for each in names]
     end = recording.duration if end is None else end
     if not start < end:
         raise usage_error(f"--from {start:g} is not before the end, {end:g}", "name a part of the recording")
     write_output(output, plot_svg(panels, failures(recording.events), (start, end), run.name))
     click.echo(f"wrote {output}")
-
-
-def _panel(recording: "Recording", known: "list[Series]", names: list[str]) -> "Panel":
-    """Return the panel of the series with these names, and what programs compare them with."""
-    from jacaros.look.out.limits import limits
-    from jacaros.look.out.series import named
-    from jacaros.look.out.svg_plot import Panel
-
-    curves = []
-    for name in names:
-        found = named(known, name)
-        curves += [(name if len(found) == 1 else f"{each.owner}:{name}", each) for each in found]
-    compared = dict(limit for _, each in curves for limit in limits(recording, each, known))
-    return Panel(curves, [*compared.items()])
 
 
 @click.command("export", epilog=examples("jacaros export run.jsonl -o run.mcap"))
