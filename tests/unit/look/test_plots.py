@@ -87,7 +87,7 @@ def drawn(
     *curves: Series, failed: list[Failure] | None = None, end: float = 2.0, start: float = 0.0
 ) -> ElementTree.Element:
     panel = Panel(
-        [(each.full_name, each) for each in curves],
+        [(f"{each.owner}: {each.name}.{each.field}", each) for each in curves],
         [("20 & less", Series("limit", "", "20", "", [(0.0, 20.0)]))],
     )
     return ElementTree.fromstring(plot_svg([panel], failed or [], (start, end), "<run>"))
@@ -100,7 +100,7 @@ def marks(svg: ElementTree.Element, kind: str) -> list[str]:
 def test_a_plot_shows_curves_thresholds_and_labels() -> None:
     svg = drawn(*named(all_series(RECORDING), "battery"), *named(all_series(RECORDING), "r2.x"))
     texts = [each.text for each in svg.iter(f"{SVG}text")]
-    assert {"guard:battery.3", "r2.x", "20 & less", "%, m", "time (s)"} <= {*texts}
+    assert {"guard: battery.3", "r2: r2.x", "20 & less", "%, m", "time (s)"} <= {*texts}
     assert len(marks(svg, "limit")) == 1
     stepped, moving = [each for each in marks(svg, "curve") if not each.endswith("h24")]
     assert "L" not in stepped

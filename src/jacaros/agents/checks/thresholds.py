@@ -10,7 +10,8 @@ battery < Argument(name='limit', arity=1, place=0)
 """
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import product
 from typing import NamedTuple
 
 from jacaros.agents.checks.formulas import Clause, in_order
@@ -37,72 +38,59 @@ class Threshold(NamedTuple):
     clause: Clause
 
 
-_Sources = dict[str, list[Argument]]
-"""By variable: the arguments that bind it."""
-
-
 def thresholds(found: Iterable[Clause]) -> Iterator[Threshold]:
     """Yield the comparisons of beliefs in plans and rules. Variables are traced through rules to beliefs."""
     all_clauses = list(found)
-    rules = _Rules(all_clauses)
+    sources = _Sources(all_clauses)
     for clause in all_clauses:
         for node, asked in in_order(clause):
             if asked and isinstance(node, nodes.Relation) and BINARY[node.operator].orders:
-                yield from _of_relation(node, rules, clause)
+                sides = (sources.values(each, clause) for each in (node.left, node.right))
+                for one, other in product(*sides):
+                    if isinstance(one, Argument):
+                        yield Threshold(one, node.operator, other, clause)
+                    elif isinstance(other, Argument):
+                        yield Threshold(other, _MIRRORED[node.operator], one, clause)
 
 
-def _of_relation(relation: nodes.Relation, rules: "_Rules", clause: Clause) -> Iterator[Threshold]:
-    left, right = rules.values(relation.left, clause), rules.values(relation.right, clause)
-    for one in left:
-        for other in right:
-            if isinstance(one, Argument):
-                yield Threshold(one, relation.operator, other, clause)
-            elif isinstance(other, Argument):
-                yield Threshold(other, _MIRRORED[relation.operator], one, clause)
-
-
-class _Rules:
+class _Sources:
     """Finds the beliefs behind variables."""
 
     def __init__(self, found: Iterable[Clause]) -> None:
-        self._by_head: dict[tuple[str, int], list[nodes.Rule]] = defaultdict(list)
+        self._rules: dict[tuple[str, int], list[nodes.Rule]] = defaultdict(list)
+        self._known: dict[int, dict[str, list[Argument]]] = {}
         for clause in found:
             if isinstance(clause, nodes.Rule):
-                self._by_head[clause.head.functor, len(clause.head.arguments)].append(clause)
-        self._sources: dict[int, _Sources] = {}
+                self._rules[clause.head.functor, len(clause.head.arguments)].append(clause)
 
-    def values(self, term: nodes.Term, clause: Clause) -> list[Argument | float]:
+    def values(self, term: nodes.Term, clause: Clause) -> Sequence[Argument | float]:
         """Return the number, or the beliefs that bind the variable; nothing for other terms."""
-        if isinstance(term, nodes.Number):
-            return [term.value]
-        return (
-            [*self._beliefs(self._bound(clause).get(term.name, []))]
-            if isinstance(term, nodes.Variable)
-            else []
-        )
+        return [term.value] if isinstance(term, nodes.Number) else [*self._beliefs(self._of(term, clause))]
 
-    def _beliefs(self, arguments: list[Argument]) -> Iterator[Argument]:
+    def _beliefs(self, arguments: Sequence[Argument]) -> Iterator[Argument]:
         seen, pending = set(arguments), list(arguments)
         while pending:
             argument = pending.pop(0)
-            heads = self._by_head.get(argument[:2])
+            heads = self._rules.get(argument[:2])
             if heads is None:
                 yield argument
             for rule in heads or ():
-                given = rule.head.arguments[argument.place]
-                deeper = self._bound(rule).get(given.name, []) if isinstance(given, nodes.Variable) else []
+                deeper = self._of(rule.head.arguments[argument.place], rule)
                 pending += [each for each in deeper if each not in seen]
                 seen.update(deeper)
 
-    def _bound(self, clause: Clause) -> _Sources:
-        known = self._sources.get(id(clause))
+    def _of(self, term: nodes.Term, clause: Clause) -> Sequence[Argument]:
+        """Return the arguments that bind a variable in a clause; nothing for other terms."""
+        if not isinstance(term, nodes.Variable):
+            return ()
+        known = self._known.get(id(clause))
         if known is None:
-            known = self._sources[id(clause)] = defaultdict(list)
+            known = self._known[id(clause)] = defaultdict(list)
             for literal in _asked(clause):
-                for index, argument in enumerate(literal.arguments):
-                    if isinstance(argument, nodes.Variable):
-                        known[argument.name].append(Argument(literal.functor, len(literal.arguments), index))
-        return known
+                for place, each in enumerate(literal.arguments):
+                    if isinstance(each, nodes.Variable):
+                        known[each.name].append(Argument(literal.functor, len(literal.arguments), place))
+        return known.get(term.name, ())
 
 
 def _asked(clause: Clause) -> Iterator[nodes.Literal]:

@@ -43,7 +43,8 @@ class McapFile:
         self._counts: dict[int, int] = {}
         self._chunks: list[bytes] = []
         self._span: list[int] = []
-        self._begin_chunk()
+        self._records = bytearray()
+        self._index: dict[int, list[tuple[int, int]]] = {}
         self._write(_MAGIC + _record(_HEADER, _text("") + _text(library)))
 
     def add(self, nanoseconds: int, topic: str, schema: str, message: dict[str, Any], data: bytes) -> None:
@@ -89,10 +90,6 @@ class McapFile:
         self._definitions[kind].append(_record(kind, content))
         self._records += _record(kind, content)
 
-    def _begin_chunk(self) -> None:
-        self._records = bytearray()
-        self._index: dict[int, list[tuple[int, int]]] = {}
-
     def _end_chunk(self) -> None:
         times = [time for entries in self._index.values() for time, _ in entries]
         if not times:
@@ -109,19 +106,14 @@ class McapFile:
         index += _text("") + pack("<QQ", len(records), len(records))
         self._chunks.append(_record(_CHUNK_INDEX, index))
         self._span = [min([first, *self._span]), max([last, *self._span])]
-        self._begin_chunk()
+        self._records.clear()
+        self._index.clear()
 
     def _statistics(self) -> bytes:
         counts = b"".join(pack("<HQ", *each) for each in self._counts.items())
-        numbers = (
-            sum(self._counts.values()),
-            len(self._schemas),
-            len(self._channels),
-            0,
-            0,
-            len(self._chunks),
-        )
-        return pack("<QHIIIIQQ", *numbers, *(self._span or (0, 0))) + _field(counts)
+        sizes = len(self._schemas), len(self._channels), 0, 0, len(self._chunks)
+        messages = sum(self._counts.values())
+        return pack("<QHIIIIQQ", messages, *sizes, *(self._span or (0, 0))) + _field(counts)
 
     def _write(self, data: bytes) -> None:
         self._file.write(data)
@@ -136,11 +128,8 @@ def _shape(content: Any, name: str = "") -> dict[str, Any]:
     """Return a JSON schema for similar content; Foxglove needs the items of arrays, even of empty ones."""
     if isinstance(content, dict):
         title = {"title": _TIMES[name]} if name in _TIMES else {}
-        return {
-            "type": "object",
-            **title,
-            "properties": {key: _shape(each, key) for key, each in content.items()},
-        }
+        properties = {key: _shape(each, key) for key, each in content.items()}
+        return {"type": "object", **title, "properties": properties}
     if isinstance(content, list | tuple):
         return {"type": "array", "items": _shape(content[0] if content else {})}
     return {"type": _TYPES[type(content)]}

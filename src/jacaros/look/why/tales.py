@@ -98,16 +98,11 @@ class Tale:
         text = self._pursuit() if self.goals else self.text
         text = f"{_names([*self.who])}: {text}" if self.who else text
         has_end = (self.count > 1 or self.lasts) and self.last > self.t
+        until = round(self.last, 3) if has_end else None
+        count = self.count if self.count > len(self.who) and not self.goals else 1
         single = next(iter(self.who)) if len(self.who) == 1 else ""
-        return StoryLine(
-            round(self.t, 3),
-            text,
-            self.level,
-            self.count if self.count > len(self.who) and not self.goals else 1,
-            round(self.last, 3) if has_end else None,
-            "" if self.robot else single,
-            self.robot if single else "",
-        )
+        agent, robot = ("", single) if self.robot else (single, "")
+        return StoryLine(round(self.t, 3), text, self.level, count, until, agent, robot)
 
     def _pursuit(self) -> str:
         """Return what was pursued in words; rounds of a loop by their name, because they differ in their arguments."""
@@ -154,7 +149,7 @@ class Teller:
         self._take: Mapping[str, Callable[[float, Data], None]] = {
             "goal": self._goal,
             "intention": self._intention,
-            "log": lambda t, data: self._warnings.append((t, data)),
+            "log": self._log,
             "agent": self._agent,
             "member": self._member,
             "believed": self._believed,
@@ -292,18 +287,20 @@ class Teller:
 
     def _tell_warnings(self) -> None:
         """Tell the warnings that no failed goal has told."""
-        lost = [
-            (tale.t - AT_ONCE, tale.last + AT_ONCE) for key, tale in self._tales.items() if key[0] == "lost"
-        ]
+        lost = [tale for key, tale in self._tales.items() if key[0] == "lost"]
         for t, data in self._warnings:
             found = _WARNING.match(data["text"])
             is_loss = found is not None and _LOST in data["text"]
-            if data["level"] == "info" or (is_loss and any(first <= t <= last for first, last in lost)):
+            if is_loss and any(each.t - AT_ONCE <= t <= each.last + AT_ONCE for each in lost):
                 continue
             who, text = (found[1], found[2]) if found is not None else ("", data["text"].partition("\n")[0])
             if is_loss:
                 text = f"{text.partition(_LOST)[0]}: {reason(text)}"
             self._tell("error" if is_loss else data["level"], t, _cut(text), who, about=_pattern(text))
+
+    def _log(self, t: float, data: Data) -> None:
+        if data["level"] != "info":
+            self._warnings.append((t, data))
 
     def _agent(self, t: float, data: Data) -> None:
         if data["state"] == "ended":
@@ -363,10 +360,8 @@ class Teller:
             agents = len({agent for agent, _ in ended})
             by = f" by {agents} agents" if agents > 1 else ""
             parts.append(f"still wanted{by}: {_names(sorted({f'`{shown(goal)}`' for _, goal in ended}))}")
-        level: Level = (
-            "warning" if code is None else "error" if 0 < (code or 0) < _SIGNALS or lost else "note"
-        )
-        return Tale(Rank.END, past.end, "; ".join(parts), level)
+        level: Level = "error" if lost or 0 < (code or 0) < _SIGNALS else "note"
+        return Tale(Rank.END, past.end, "; ".join(parts), "warning" if code is None else level)
 
 
 class _Kind(NamedTuple):
