@@ -175,3 +175,12 @@ def test_the_command_takes_either_a_question_or_the_story(arguments: list[str]) 
     result = CliRunner().invoke(why, ["run.jsonl", *arguments])
     assert result.exit_code != 0
     assert "--story" in str(result.exception) + result.output
+
+
+def test_unknown_kinds_and_levels_of_newer_versions_are_skipped() -> None:
+    run: list[Record] = [
+        (0.0, "lost", {"agent": "watch"}),
+        (0.0, "error", {}),
+        (1.0, "log", {"level": "odd", "text": "hm"}),
+    ]
+    assert texts([*run, (2.0, "ended", {"code": 0})]) == ["the run ended with exit code 0"]

@@ -160,17 +160,18 @@ class Teller:
     def take(self, t: float, event: str, data: Data) -> None:
         """Take the next record."""
         is_other = event == "property" and data.get("name") != "question"
-        if is_other or not (event in self._take or event in _KINDS) or not is_well_formed(event, data):
+        kind = _KINDS.get(event)
+        if is_other or not (event in self._take or (kind and kind.text)) or not is_well_formed(event, data):
             return
         if event in self._take:
             self._take[event](t, data)
-        else:
-            self._tell(event, t, _KINDS[event].text.format_map(data), robot=str(data.get("robot") or ""))
+        elif kind is not None:
+            self._tell(event, t, kind.text.format_map(data), robot=str(data.get("robot") or ""))
 
     def tales(self, past: Past) -> list[Tale]:
         """Return all tales; *past* has the programs, and how the run ended."""
         for key, failure in self._failures.items():
-            self._lose(key, failure)
+            self._fail(key, failure)
         self._tell_warnings()
         for pursuit in self._pursuits.values():
             pursuit.tale.last = past.end
@@ -185,8 +186,9 @@ class Teller:
 
     def _tell(self, kind: str, t: float, text: str, who: str = "", robot: str = "", about: str = "") -> Tale:
         """Add to the tale of a kind and a text, or *about* in its place."""
-        rank, level, _ = _KINDS[kind]
-        known = self._tales.setdefault((kind, about or text), Tale(rank, t, text, level, robot, count=0))
+        rank, level, _, lasts = _KINDS[kind]
+        tale = Tale(rank, t, text, level, robot, lasts, count=0)
+        known = self._tales.setdefault((kind, about or text), tale)
         known.count += 1
         known.last = t
         if who or robot:
@@ -203,7 +205,7 @@ class Teller:
             del self._failures[key]
             # A goal with a plan for its failure is pursued again.
             is_handled = number in failure.goals and state in ("pursued", "recovered")
-            (self._handle if is_handled else self._lose)(key, failure)
+            self._fail(key, failure, is_handled)
         if state == "pursued":
             self._begin(t, key, number, goal)
         elif state == "failed":
@@ -220,7 +222,6 @@ class Teller:
         self._open.setdefault(key[0], set()).add(key[1])
         if key not in self._pursuits:
             tale = self._tell("goal", t, "", key[0], about=name_of(goal))
-            tale.lasts = True
             tale.goals[goal] = None
             self._pursuits[key] = _Pursuit({}, tale)
         self._pursuits[key].stack[number] = goal
@@ -241,7 +242,6 @@ class Teller:
         if pursuit is not None and number == next(iter(pursuit.stack)):
             told = f"`!{name_of(pursuit.stack[number])}` was suspended"
             self._suspended[key] = self._tell("suspended", t, told, key[0])
-            self._suspended[key].lasts = True
 
     def _tell_suspended(self, past: Past) -> None:
         """Warn of agents all of whose goals were suspended at the end: nothing was left to resume them."""
@@ -264,18 +264,15 @@ class Teller:
         if not intentions:
             self._idle[key[0]] = t
 
-    def _handle(self, key: Key, failure: _Failure) -> None:
-        because, goal = reason(failure.why), [*failure.goals.values()][-1]
-        told = f"`{_cut(shown(goal))}` failed: {because}; a plan handled it"
-        # Goals that fail for one reason, one after the other, are one tale.
-        self._tell("handled", failure.t, told, key[0], about=_pattern(because))
-
-    def _lose(self, key: Key, failure: _Failure) -> None:
+    def _fail(self, key: Key, failure: _Failure, is_handled: bool = False) -> None:
         because, goal = reason(failure.why), [*failure.goals.values()][-1]
         told = f"`{_cut(shown(goal))}` failed{f': {because}' if because else ''}"
-        about = f"{name_of(goal)} {_pattern(because)}"
-        self._tell("lost", failure.t, told, key[0], about=about)
-        self._end_intention(failure.t, key)
+        if is_handled:
+            # Goals that fail for one reason, one after the other, are one tale.
+            self._tell("handled", failure.t, f"{told}; a plan handled it", key[0], about=_pattern(because))
+        else:
+            self._tell("lost", failure.t, told, key[0], about=f"{name_of(goal)} {_pattern(because)}")
+            self._end_intention(failure.t, key)
 
     def _intention(self, t: float, data: Data) -> None:
         if data["state"] == "over":
@@ -299,7 +296,7 @@ class Teller:
             self._tell("error" if is_loss else data["level"], t, _cut(text), who, about=_pattern(text))
 
     def _log(self, t: float, data: Data) -> None:
-        if data["level"] != "info":
+        if data["level"] in ("warning", "error"):
             self._warnings.append((t, data))
 
     def _agent(self, t: float, data: Data) -> None:
@@ -316,7 +313,7 @@ class Teller:
     def _fault(self, t: float, data: Data) -> None:
         text = f"fault `{data['fault']}` ({data['kind'].replace('_', ' ')})"
         if data["state"] != "ends":
-            self._tell("fault", t, text, robot=str(data.get("robot") or "")).lasts = True
+            self._tell("fault", t, text, robot=str(data.get("robot") or ""))
         elif (begun := self._tales.get(("fault", text))) is not None:
             begun.last = t
 
@@ -324,7 +321,7 @@ class Teller:
         """Tell of a robot that is wrong about its pose. The record is repeated while it is, then once without a pose."""
         if data.get("x") is not None:
             tale = self._tell("believed", t, _KINDS["believed"].text, robot=data["robot"])
-            tale.count, tale.lasts = 1, True
+            tale.count = 1
             if tale.last - tale.t >= LONG:
                 tale.rank, tale.level = Rank.TROUBLE, "warning"
 
@@ -365,23 +362,27 @@ class Teller:
 
 
 class _Kind(NamedTuple):
-    """A kind of tales; *text* is that of a record that needs nothing else."""
+    """A kind of tales; *text* is that of a record that needs nothing else.
+
+    *lasts*: whether it lasts from the first event to the last one.
+    """
 
     rank: Rank
     level: Level
     text: str = ""
+    lasts: bool = False
 
 
 _KINDS: Mapping[str, _Kind] = {
-    "goal": _Kind(Rank.ROUTINE, "note"),
-    "suspended": _Kind(Rank.ROUTINE, "note"),
+    "goal": _Kind(Rank.ROUTINE, "note", lasts=True),
+    "suspended": _Kind(Rank.ROUTINE, "note", lasts=True),
     "handled": _Kind(Rank.HANDLED, "warning"),
     "lost": _Kind(Rank.LOSS, "error"),
     "warning": _Kind(Rank.TROUBLE, "warning"),
     "error": _Kind(Rank.LOSS, "error"),
     "member": _Kind(Rank.FAULT, "error", "did not answer; it is a system of the fleet"),
-    "fault": _Kind(Rank.FAULT, "warning"),
-    "believed": _Kind(Rank.ROUTINE, "note", "was not where it believed to be"),
+    "fault": _Kind(Rank.FAULT, "warning", lasts=True),
+    "believed": _Kind(Rank.ROUTINE, "note", "was not where it believed to be", lasts=True),
     "property": _Kind(Rank.FAULT, "warning"),
     "intervention": _Kind(Rank.FAULT, "note", "you changed the run: {what}"),
     "battery_empty": _Kind(Rank.LOSS, "error", "the battery is empty"),

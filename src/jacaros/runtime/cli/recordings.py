@@ -4,16 +4,12 @@ import asyncio
 import json
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from jacaros.runtime.cli.options import PATH, option, place_options
 from jacaros.runtime.cli.outputs import check_output, check_view
 from jacaros.runtime.cli.usage import examples, existing, read_recording, usage_error
-
-if TYPE_CHECKING:
-    from jacaros.look.records.recording import Recording
 
 # An event such as `-hidden(_)` must not be read as options, not even as -h.
 _QUESTIONS = {"ignore_unknown_options": True, "help_option_names": ["--help"]}
@@ -118,6 +114,7 @@ def why(
     error, which lists the operations, goals and events of the run. Variables match anything. Quote the question with single
     quotes, because shells interpret `!` and brackets.
     """  # fmt: skip
+    from jacaros.look.why.story import story_of, story_text
     from jacaros.look.why.why import explain
 
     if story and (question or agent or robot):
@@ -126,21 +123,15 @@ def why(
         raise usage_error("missing question", "ask one, such as `did it dock`, or pass --story")
     recording = read_recording(run)
     if story:
-        _print_story(recording, at, as_json)
+        lines = story_of(each for each in recording.events if at is None or each[0] <= at)
+        told = [asdict(each) for each in lines]
+        click.echo(json.dumps(told, ensure_ascii=False) if as_json else story_text(lines))
         return
     if robot and robot not in recording.robots:
         known = ", ".join(recording.robots) or "none"
         raise usage_error(f"unknown robot: `{robot}`", f"robots in the recording: {known}")
     answer = explain(recording.events, " ".join(question), at, agent, robot)
     click.echo(json.dumps(answer.data(), ensure_ascii=False) if as_json else answer.text())
-
-
-def _print_story(recording: "Recording", at: float | None, as_json: bool) -> None:
-    from jacaros.look.why.story import story_of, story_text
-
-    lines = story_of(each for each in recording.events if at is None or each[0] <= at)
-    told = [asdict(each) for each in lines]
-    click.echo(json.dumps(told, ensure_ascii=False) if as_json else story_text(lines))
 
 
 @click.command(
