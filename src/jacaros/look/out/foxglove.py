@@ -19,6 +19,7 @@ _WORLD = "map"
 """Frame of the world; the frame of each robot has the robot's name."""
 _LEVELS = {"info": 2, "warning": 3, "error": 4}
 _MOST_LANES = 30
+_ZERO = {"x": 0.0, "y": 0.0, "z": 0.0}
 
 
 class Message(NamedTuple):
@@ -34,13 +35,8 @@ def write_mcap(recording: Recording, file: BinaryIO) -> dict[str, str]:
     """Write a recording to an empty file. Return the topics with their schemas. Times count from the start of the run."""
     mcap, topics = McapFile(file, f"jacaros {VERSION}"), dict[str, str]()
     texts = (_log(t, agent, text, "info") for t, agent, text in recording.texts)
-    streams = (
-        _numbers(recording),
-        _poses(recording),
-        texts,
-        _Lanes().messages(recording),
-        _sensed(recording),
-    )
+    lanes = _Lanes().messages(recording)
+    streams = _numbers(recording), _poses(recording), texts, lanes, _sensed(recording)
     for message in merge(*streams, key=lambda each: each.t):
         topics[message.topic] = message.schema
         mcap.add(max(0, round(message.t * 1e9)), *message[1:], encoded(message.content))
@@ -76,9 +72,8 @@ class _Lanes:
         failed: dict[object, str] = {}
         for t, kind, data in recording.events:
             if kind == "goal" and data["state"] in ("failed", "recovered"):
-                failed[data["agent"], data.get("intention")] = (
-                    data["goal"] if data["state"] == "failed" else ""
-                )
+                lost = data["goal"] if data["state"] == "failed" else ""
+                failed[data["agent"], data.get("intention")] = lost
             elif kind == "intention" and data["state"] == "over":
                 key = data["agent"], data["id"]
                 yield from self._end(t, key, failed.pop(key, ""))
@@ -90,12 +85,8 @@ class _Lanes:
                 topic = _topic("resources", data["resource"])
                 yield Message(t, topic, "jacaros.Lane", {"now": data["holder"] or ""})
             elif kind == "operation" and data["state"] == "began":
-                yield self._show(
-                    t,
-                    data["id"],
-                    _topic("operations", data["artifact"].rpartition("/")[2]),
-                    data["operation"],
-                )
+                topic = _topic("operations", data["artifact"].rpartition("/")[2])
+                yield self._show(t, data["id"], topic, data["operation"])
             elif kind == "operation":
                 reason = data.get("reason") or "unknown reason"
                 yield from self._end(t, data["id"], reason if data["state"] == "failed" else "")
@@ -118,15 +109,8 @@ def _doing(data: Mapping[str, Any]) -> str:
 
 
 def _log(t: float, name: str, text: str, level: str) -> Message:
-    log = {
-        "timestamp": _time(t),
-        "level": _LEVELS.get(level, 2),
-        "message": text,
-        "name": name,
-        "file": "",
-        "line": 0,
-    }
-    return Message(t, "/log", "foxglove.Log", log)
+    log = {"timestamp": _time(t), "level": _LEVELS.get(level, 2), "message": text, "name": name}
+    return Message(t, "/log", "foxglove.Log", {**log, "file": "", "line": 0})
 
 
 def _poses(recording: Recording) -> Iterator[Message]:
@@ -136,8 +120,8 @@ def _poses(recording: Recording) -> Iterator[Message]:
                 "timestamp": _time(frame.t),
                 "parent_frame_id": _WORLD,
                 "child_frame_id": name,
-                "translation": {"x": robot.x, "y": robot.y, "z": 0.0},
-                "rotation": {"x": 0.0, "y": 0.0, "z": math.sin(robot.yaw / 2), "w": math.cos(robot.yaw / 2)},
+                "translation": {**_ZERO, "x": robot.x, "y": robot.y},
+                "rotation": {**_ZERO, "z": math.sin(robot.yaw / 2), "w": math.cos(robot.yaw / 2)},
             }
             for name, robot in zip(recording.robots, frame.robots, strict=False)
         ]
@@ -146,24 +130,15 @@ def _poses(recording: Recording) -> Iterator[Message]:
 
 def _sensed(recording: Recording) -> Iterator[Message]:
     """Yield laser scans, and what the run logs."""
-    origin = {
-        "position": {"x": 0.0, "y": 0.0, "z": 0.0},
-        "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0},
-    }
+    origin = {"position": _ZERO, "orientation": {**_ZERO, "w": 1.0}}
     for t, kind, data in recording.events:
         if kind == "log":
             yield _log(t, "run", data["text"], data["level"])
         elif kind == "laser":
             start, ranges = float(data["from"]), [each / 100.0 for each in data["ranges"]]
-            scan = {
-                "timestamp": _time(t),
-                "frame_id": data["robot"],
-                "pose": origin,
-                "start_angle": start,
-                "end_angle": start + data["step"] * (len(ranges) - 1),
-                "ranges": ranges,
-                "intensities": [],
-            }
+            end = start + data["step"] * (len(ranges) - 1)
+            frame = {"timestamp": _time(t), "frame_id": data["robot"], "pose": origin}
+            scan = {**frame, "start_angle": start, "end_angle": end, "ranges": ranges, "intensities": []}
             yield Message(t, _topic("robots", data["robot"], "laser"), "foxglove.LaserScan", scan)
 
 
@@ -173,10 +148,9 @@ def _time(t: float) -> dict[str, int]:
 
 def layout(recording: Recording, topics: Mapping[str, str]) -> dict[str, Any]:
     """Return a layout for the topics of a file: map, output, lanes, batteries with their limits, and positions."""
-    beliefs = [
-        each for each in recording.events if each[1] == "belief" and each[2]["belief"].startswith("battery(")
-    ]
-    charges = all_series(Recording(events=beliefs))
+    beliefs = [each for each in recording.events if each[1] == "belief"]
+    charged = [each for each in beliefs if each[2]["belief"].startswith("battery(")]
+    charges = all_series(Recording(events=charged))
     compared = dict(limit for each in charges for limit in limits(recording, each, ()))
     of_schema: dict[str, list[str]] = defaultdict(list)
     for topic, schema in topics.items():

@@ -46,9 +46,9 @@ def _name(found: re.Match[str]) -> str:
     return word if word[0] == '"' else "_"
 
 
-def cut(told: str) -> str:
-    """Return the beginning of a long text."""
-    return told if len(told) <= LONGEST else f"{told[: LONGEST - 3]}..."
+def cut(told: str, longest: int = LONGEST) -> str:
+    """Return the beginning of a text that is longer than *longest* characters."""
+    return told if len(told) <= longest else f"{told[: longest - 3]}..."
 
 
 # ---- values and messages
@@ -64,7 +64,7 @@ _LARGEST = 10**15
 
 def limited(words: str) -> str:
     """Return *words*, cut to `LONGEST_VALUE` characters."""
-    return words if len(words) <= LONGEST_VALUE else f"{words[: LONGEST_VALUE - 3]}..."
+    return cut(words, LONGEST_VALUE)
 
 
 def json_value(value: object) -> object:

@@ -10,6 +10,7 @@ from enum import IntEnum
 from typing import Any, Literal, NamedTuple
 
 from jacaros.look.records.records import Data, is_well_formed
+from jacaros.look.records.words import cut
 from jacaros.look.why.about_now import ending_step
 from jacaros.look.why.chains import shown
 from jacaros.look.why.past import AT_ONCE, Past
@@ -266,7 +267,7 @@ class Teller:
 
     def _fail(self, key: Key, failure: _Failure, is_handled: bool = False) -> None:
         because, goal = reason(failure.why), [*failure.goals.values()][-1]
-        told = f"`{_cut(shown(goal))}` failed{f': {because}' if because else ''}"
+        told = f"`{cut(shown(goal), LONGEST)}` failed{f': {because}' if because else ''}"
         if is_handled:
             # Goals that fail for one reason, one after the other, are one tale.
             self._tell("handled", failure.t, f"{told}; a plan handled it", key[0], about=_pattern(because))
@@ -293,7 +294,9 @@ class Teller:
             who, text = (found[1], found[2]) if found is not None else ("", data["text"].partition("\n")[0])
             if is_loss:
                 text = f"{text.partition(_LOST)[0]}: {reason(text)}"
-            self._tell("error" if is_loss else data["level"], t, _cut(text), who, about=_pattern(text))
+            self._tell(
+                "error" if is_loss else data["level"], t, cut(text, LONGEST), who, about=_pattern(text)
+            )
 
     def _log(self, t: float, data: Data) -> None:
         if data["level"] in ("warning", "error"):
@@ -328,7 +331,7 @@ class Teller:
     def _property(self, t: float, data: Data) -> None:
         """Tell of a question to a person: the values are its number, its text and the options."""
         if len(data["values"] or ()) > 1:
-            self._tell("property", t, f"a person was asked: {_cut(str(data['values'][1]))}")
+            self._tell("property", t, f"a person was asked: {cut(str(data['values'][1]), LONGEST)}")
 
     # ---- the end
 
@@ -408,7 +411,7 @@ def reason(why: str) -> str:
     words = _PLACE.sub("", why.partition("\n")[0])
     for _ in range(3):  # each may be behind another
         words = _NOISE.sub("", words)
-    return _cut(words)
+    return cut(words, LONGEST)
 
 
 def _pattern(text: str) -> str:
@@ -419,10 +422,6 @@ def _names(names: Iterable[str]) -> str:
     first = [*names]
     more = f" and {len(first) - MOST_NAMES} more" if len(first) > MOST_NAMES else ""
     return ", ".join(first[:MOST_NAMES]) + more
-
-
-def _cut(text: str) -> str:
-    return text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..."
 
 
 def _duration(t: float) -> str:
