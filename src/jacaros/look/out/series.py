@@ -188,11 +188,10 @@ def named(known: Sequence[Series], name: str) -> list[Series]:
     """
     parts = _NAME.fullmatch(name)
     if parts is not None:
-        of_name = [
-            each for each in known if parts["owner"] in (None, each.owner) and parts["name"] == each.name
-        ]
+        owned = [each for each in known if parts["owner"] in (None, each.owner)]
         for source in ("belief", "property", "robot"):
-            found = _with_field((each for each in of_name if each.source == source), parts["field"])
+            meant = [each for each in owned if (each.source, each.name) == (source, parts["name"])]
+            found = _with_field(meant, parts["field"])
             if found:
                 return found
     names = [*_short_names(each for each in known if each.changes)]
@@ -204,10 +203,8 @@ def named(known: Sequence[Series], name: str) -> list[Series]:
 
 def _short_names(known: Iterable[Series]) -> dict[str, None]:
     """Return the names without owners, and those of single numbers without fields."""
-    names = dict.fromkeys((each.source, each.name, each.field) for each in known)
-    numbers = Counter(
-        name for _, name, field in dict.fromkeys((source == "robot", *rest) for source, *rest in names)
-    )
+    names = dict.fromkeys((each.source == "robot", each.name, each.field) for each in known)
+    numbers = Counter(name for _, name, _ in names)
     return dict.fromkeys(name if numbers[name] == 1 else f"{name}.{field}" for _, name, field in names)
 
 

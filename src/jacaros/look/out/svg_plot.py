@@ -60,13 +60,12 @@ class Panel:
 
     def between(self, start: float, end: float) -> "Panel":
         """Return the panel from *start* to *end*, without limits that are far from the curves."""
-        both = [
-            [(label, each.between(start, end)) for label, each in of] for of in (self.curves, self.limits)
-        ]
-        low, high = _range(both[0])
+        curves = [(label, each.between(start, end)) for label, each in self.curves]
+        limits = [(label, each.between(start, end)) for label, each in self.limits]
+        low, high = _range(curves)
         around = (high - low) / 2
-        near = [each for each in both[1] if low - around <= _range([each])[0] <= high + around]
-        return Panel(both[0], near)
+        near = [each for each in limits if low - around <= _range([each])[0] <= high + around]
+        return Panel(curves, near)
 
 
 def panel_of(recording: Recording, known: Sequence[Series], names: Iterable[str]) -> Panel:
@@ -112,11 +111,11 @@ def plot_svg(
     )
 
 
-class _Sheet:
+class _Sheet(NamedTuple):
     """Converts seconds to pixels."""
 
-    def __init__(self, start: float, end: float) -> None:
-        self.start, self.end = start, end
+    start: float
+    end: float
 
     def x(self, t: float) -> float:
         share = (t - self.start) / ((self.end - self.start) or 1.0)
@@ -239,9 +238,8 @@ def _time_axis(sheet: _Sheet, bottom: int) -> Iterator[str]:
     first, last = sheet.start / size / step, sheet.end / size / step
     for number in range(math.ceil(first - 1e-9), math.floor(last + 1e-9) + 1):
         x = sheet.x(number * step * size)
-        yield f'<path class="axis" d="M{x} {bottom}v5"/>' + _text(
-            f"{number * step:.12g}", x, bottom + 18, "middle"
-        )
+        label = _text(f"{number * step:.12g}", x, bottom + 18, "middle")
+        yield f'<path class="axis" d="M{x} {bottom}v5"/>{label}'
     yield _text(f"time ({unit})", _WIDTH - _RIGHT, bottom + 36, "end")
 
 
