@@ -20,7 +20,8 @@ def limits(recording: Recording, series: Series, known: Sequence[Series]) -> lis
     """
     labels: dict[tuple[str, str], dict[str, None]] = {}
     found: dict[tuple[str, str], Series] = {}
-    for agent, program in _programs(recording).items():
+    programs = {data["agent"]: data for _, kind, data in recording.events if kind == "program"}
+    for agent, program in programs.items():
         if series.source == "robot" or (series.source == "belief" and series.owner != agent):
             continue
         for each in program.get("thresholds", ()):
@@ -32,10 +33,6 @@ def limits(recording: Recording, series: Series, known: Sequence[Series]) -> lis
                 found[key] = limit
                 labels.setdefault(key, {})[each.get("rule") or _plan(program, each.get("plan"))] = None
     return [(f"{limit.name}: {', '.join(labels[key])}", limit) for key, limit in found.items()]
-
-
-def _programs(recording: Recording) -> dict[str, Mapping[str, Any]]:
-    return {data["agent"]: data for _, kind, data in recording.events if kind == "program"}
 
 
 def _limit(agent: str, threshold: Mapping[str, Any], known: Sequence[Series]) -> Series | None:

@@ -143,10 +143,11 @@ def all_series(recording: Recording) -> list[Series]:
 
     Beliefs of which an agent has several at a time, such as the places of a map, are not one number over time.
     """
-    found: dict[tuple[str, ...], _Fields] = {}
-    for t, *key, values in samples(recording):
-        fields = found.setdefault(tuple(key), _Fields(*key))
-        if key[0] == "belief":
+    found: dict[tuple[str, str, str], _Fields] = {}
+    for t, source, owner, name, values in samples(recording):
+        key = source, owner, name
+        fields = found.get(key) or found.setdefault(key, _Fields(*key))
+        if source == "belief":
             fields.held = max(0, fields.held + (1 if values is not None else -1))
             fields.is_many = fields.is_many or fields.held > 1
         fields.take(t, values)

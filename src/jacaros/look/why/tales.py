@@ -188,8 +188,10 @@ class Teller:
     def _tell(self, kind: str, t: float, text: str, who: str = "", robot: str = "", about: str = "") -> Tale:
         """Add to the tale of a kind and a text, or *about* in its place."""
         rank, level, _, lasts = _KINDS[kind]
-        tale = Tale(rank, t, text, level, robot, lasts, count=0)
-        known = self._tales.setdefault((kind, about or text), tale)
+        known = self._tales.get((kind, about or text))
+        if known is None:
+            known = Tale(rank, t, text, level, robot, lasts, count=0)
+            self._tales[kind, about or text] = known
         known.count += 1
         known.last = t
         if who or robot:
