@@ -3,6 +3,7 @@
 import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable
+from itertools import takewhile
 from pathlib import Path
 
 from corpus import BY_NAME, with_mistake, written
@@ -59,12 +60,15 @@ def is_at_the_place(found: Diagnostic, mistake: Mistake, line: int, files: dict[
 def names_of(mistake: Mistake, files: dict[str, str]) -> set[str]:
     """Return what names a mistake: the words that it removes and adds.
 
-    For a focus that is left out, these are also the names that the artifact shows; for a wait, the goal of its plan.
+    For a focus that is left out, these are also the names that the artifact shows; for a wait, the goal of its plan; for
+    a number of arguments, the name that has them.
     """
     before, after = (Counter(re.findall(r"[A-Za-z_]\w*", text)) for text in (mistake.before, mistake.after))
     names = set(before - after) | set(after - before)
     if mistake.kind == "drop-bang":
         names |= set(re.findall(r"!(\w+)", mistake.before))
+    elif mistake.kind == "arity":
+        names.add(_with_arguments(mistake))
     elif mistake.kind == "drop-focus":
         kinds = re.findall(r"artifact +\w+ *: *\"?([\w.]+)|\"(\w+)\"", "\n".join(files.values()))
         for kind in {name for pair in kinds for name in pair if name}:
@@ -72,6 +76,26 @@ def names_of(mistake: Mistake, files: dict[str, str]) -> set[str]:
     elif mistake.kind == "drop-wait":
         names |= {_goal_above(files[mistake.file], mistake.line)}
     return names - {"focus", "by", "unit"}
+
+
+def _with_arguments(mistake: Mistake) -> str:
+    """Return the name whose arguments change: the one before the change, or before the bracket that is still open."""
+    pairs = zip(mistake.before, mistake.after, strict=False)
+    end = sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
+    is_whole_list = "(" in (mistake.before[end : end + 1], mistake.after[end : end + 1])
+    text = mistake.before[:end] if is_whole_list else _up_to_open(mistake.before[:end])
+    name = re.search(r"\w+$", text)
+    return name[0] if name else ""
+
+
+def _up_to_open(text: str) -> str:
+    """Return the text before its last round bracket that is not closed."""
+    closed = 0
+    for at in range(len(text) - 1, -1, -1):
+        closed += (text[at] == ")") - (text[at] == "(")
+        if closed < 0:
+            return text[:at]
+    return ""
 
 
 def _is_of(kind: str, mistake: Mistake, files: dict[str, str]) -> bool:

@@ -5,11 +5,14 @@ A mistake that changes nothing is not one. The rules, which look at the texts on
 * unread: a belief is added under another name or with other arguments, and no other place of the project has its name;
 * unmatched: an atom becomes a string that is only printed or passed to an artifact (which takes both), or that is nowhere
   else, so nothing is compared with it;
-* unobserved: a focus is dropped, and the program has no name that the artifact may show; artifacts in Python are
-  searched for the word;
+* unobserved: a focus is dropped, and the programs have no name that the artifact may show; artifacts in Python are
+  searched for the word. Operations need no focus, but an agent joins the workspace of an artifact by focusing it: a focus
+  in a project file is dropped without effect only if the workspace is `main` or the agent focuses another artifact there;
 * pace: a time to wait is dropped outside of a loop, or a condition to wait for whose beliefs the plan does not ask for
   later;
-* both: the goal or operation is there with the other number of arguments, too.
+* both: the goal or operation is there with the other number of arguments, too;
+* apart: the changed file belongs to the page or folder, but not to the checked program;
+* ignored: the file switches off the finding that reports this kind.
 """
 
 import re
@@ -18,6 +21,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from pages import ROOT
 from programs import Program
@@ -26,8 +31,9 @@ from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import AslError, SourceFile
 from jacaros.agents.language.loader import read_program
 from jacaros.agents.language.nodes import Node, nodes_in, occurrences, parts_of, walk
-from jacaros.artifacts.env.manual import written_properties, written_signals
+from jacaros.artifacts.env.manual import describe
 from jacaros.robots.registry import UnknownArtifactType, find_type
+from jacaros.runtime.mas.checks.files import check_files
 
 MAPPINGS = ROOT / "src/jacaros/robots/mappings"
 LIBRARY = ROOT / "src/jacaros/agents/language/library"
@@ -46,6 +52,8 @@ SWAPPED = {
     "artifact_name": "artifact",
     "wsp": "workspace",
 }
+REPORTED_BY = {"rename-variable": "singleton-variable"}
+"""Kinds that a single finding reports, with its code: a file can switch it off."""
 
 
 @dataclass(frozen=True)
@@ -85,6 +93,7 @@ class Edit:
 def mistakes(program: Program) -> Iterator[Mistake]:
     """Yield all mistakes that the kinds make of a program."""
     files = program.files()
+    checked = checked_files(program)
     project = Project(files, [name for name in program.mutable(files) if name.endswith(".asl")])
     for name in program.mutable(files):
         lines = files[name].split("\n")
@@ -93,7 +102,26 @@ def mistakes(program: Program) -> Iterator[Mistake]:
         for edit in project.edits(name) if is_program else others:
             before = lines[edit.line - 1]
             after = before[: edit.start] + edit.text + before[edit.end :]
-            yield Mistake(program.name, name, edit.kind, edit.line, before.strip(), after.strip(), edit.equal)
+            equal = edit.equal or ("" if name in checked else "apart") or _ignored(edit.kind, files[name])
+            yield Mistake(program.name, name, edit.kind, edit.line, before.strip(), after.strip(), equal)
+
+
+def checked_files(program: Program) -> set[str]:
+    """Return the names of the files that `check` reads when it checks a program."""
+    with TemporaryDirectory() as name:
+        folder = Path(name).resolve()
+        program.write(folder)
+        own = [str(folder / each) if (folder / each).is_file() else each for each in program.mappings]
+        read = check_files([folder / program.entry], own).files
+        found = {path.resolve() for path in read} | {
+            folder / each for each in (program.entry, *program.mappings)
+        }
+        return {path.relative_to(folder).as_posix() for path in found if path.is_relative_to(folder)}
+
+
+def _ignored(kind: str, text: str) -> str:
+    switched_off = re.findall(r"^// jacaros: ignore-file (.*)", text, re.MULTILINE)
+    return "ignored" if REPORTED_BY.get(kind) in re.findall(r"[\w-]+", " ".join(switched_off)) else ""
 
 
 def slip(name: str) -> str:
@@ -114,7 +142,9 @@ def shown_by(kind: str, files: dict[str, str]) -> set[str]:
     if kind.endswith(".yaml"):
         shipped = MAPPINGS / kind
         text = files.get(kind) or (shipped.read_text(encoding="utf-8") if shipped.is_file() else "")
-        sections = re.findall(r"^(?:properties|signals):.*\n((?:(?: .*)?\n)*)", text, re.MULTILINE)
+        sections = re.findall(
+            r"^(?:properties|signals|derived|frames):.*\n((?:(?: .*)?\n)*)", text, re.MULTILINE
+        )
         return {name for section in sections for name in re.findall(r"^  (\w+):", section, re.MULTILINE)}
     own = [text for name, text in files.items() if name.endswith(".py") and f"class {kind}(" in text]
     if own:
@@ -123,7 +153,8 @@ def shown_by(kind: str, files: dict[str, str]) -> set[str]:
         found = find_type(kind)
     except UnknownArtifactType:
         return set()
-    return {*written_properties(found), *written_signals(found)}
+    manual = describe(found)
+    return {each.name for each in (*manual.properties, *manual.signals)}
 
 
 class Project:
@@ -180,6 +211,30 @@ class Project:
         """Return whether the programs have a name that an artifact of this type may show; True for unknown types."""
         names = shown_by(kind, self.files)
         return not names or not names.isdisjoint({each.functor for each in self.literals})
+
+    def kinds_of(self, variable: Node, clause: Node) -> set[str]:
+        """Return the types of the artifact that a variable of a clause stands for: one made there, or looked up."""
+        name = getattr(variable, "name", "")
+        bound = [
+            each
+            for each in nodes_in(nodes.Literal, clause)
+            if name in {getattr(argument, "name", None) for argument in each.arguments}
+        ]
+        asked = {each.functor for each in bound}
+        queries = [
+            plan
+            for program in self.programs.values()
+            for plan in program.plans
+            if plan.trigger.kind == "?" and getattr(plan.trigger.literal, "functor", "") in asked
+        ]
+        looked_up = {each.value for each in nodes_in(nodes.String, tuple(queries))}
+        made = [each for each in bound if each.functor == "makeArtifact"]
+        made += [
+            each
+            for each in self.literals
+            if each.arguments and getattr(each.arguments[0], "value", "") in looked_up
+        ]
+        return {kind.value for each in made for kind in each.arguments[1:2] if isinstance(kind, nodes.String)}
 
     @cached_property
     def observes_any(self) -> bool:
@@ -421,7 +476,9 @@ class Clause:
             line = span.file.lines[span.line - 1]
             end = span.end_column - 1
             if span.line == span.end_line and line[end : end + 1] == ";":
-                equal = "" if self.project.observes_any else "unobserved"
+                kinds = self.project.kinds_of(action.arguments[0], self.clause) if action.arguments else set()
+                observes = any(map(self.project.observes, kinds)) if kinds else self.project.observes_any
+                equal = "" if observes else "unobserved"
                 yield Edit("drop-focus", span.line, span.column - 1, end + 1, "", equal)
 
     def focus_of_library(self, step: nodes.Achieve) -> Iterator[Edit]:
@@ -467,12 +524,25 @@ def dropped_focus(lines: list[str], project: Project) -> Iterator[Edit]:
     for number, line in enumerate(lines, 1):
         for found in re.finditer(r"(?<!\w)focus(?:ed-by)?: *([\w.]+(?:, *[\w.]+)*)", line):
             name = re.split(r"[ ,]+", found[1])[0]
-            artifact = line.split()[1] if "focused-by" in found[0] else name.rpartition(".")[2]
+            artifact = line.split()[1].rstrip(":") if "focused-by" in found[0] else name.rpartition(".")[2]
             declared = re.search(rf"artifact +{artifact} *: *\"?([\w.]+)", "\n".join(lines))
             mapping = f"{artifact}.yaml" if f'"{artifact}.yaml"' in "\n".join(lines) else ""
             kind = declared[1] if declared else mapping
-            equal = "" if project.observes(kind) else "unobserved"
+            joins = _joins_by(found[0], number, lines)
+            equal = "" if joins or project.observes(kind) else "unobserved"
             yield Edit("drop-focus", number, found.start(), found.end(), "", equal)
+
+
+def _joins_by(focus: str, number: int, lines: list[str]) -> bool:
+    """Return whether an agent joins a workspace only by this focus, as far as the project file shows."""
+    names = re.findall(r"[\w.]+", focus.partition(":")[2])
+    if "focused-by" not in focus:
+        return any("." in name and not name.startswith("main.") for name in names)
+    start = max(at for at in range(number) if "workspace" in lines[at])
+    end = next(at for at in range(number, len(lines)) if lines[at].strip() == "}")
+    others = "\n".join(lines[start : number - 1] + lines[number:end])
+    focusing = set(re.findall(r"\w+", " ".join(re.findall(r"focused-by: *([\w, ]+)", others))))
+    return lines[start].split()[1] != "main" and not focusing.issuperset(names)
 
 
 def units(lines: list[str]) -> Iterator[Edit]:
