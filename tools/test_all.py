@@ -149,7 +149,7 @@ def parts() -> list[Part]:
         Part("examples", (f"{BIN}/jacaros", "test", "examples"), budget=5),
         Part("fuzz", (PYTHON, "tools/fuzz.py", "--minutes", "1"), budget=620, repeats=True),
         Part("docs", (*PYTEST, "tests/docs", "tests/packaging", "-m", "not ros2"), budget=100),
-        Part("mistakes", (*PYTEST, "tests/mistakes"), budget=120),
+        Part("mistakes", (*PYTEST, "tests/mistakes"), budget=170),
         Part("browser", (*PYTEST, "tests/unit/look", "-m", "browser"), needs="chromium", skips_fail=True),
     ]
     for minor in (12, 13, 14):
