@@ -277,6 +277,7 @@ def singletons(clause: Clause) -> Iterator[Diagnostic]:
     occurrences: Counter[str] = Counter()
     first: dict[str, nodes.Variable] = {}
     in_texts: set[str] = set()
+    atoms: dict[str, nodes.Literal] = {}
     for node in walk(clause):
         if isinstance(node, nodes.Variable) and not node.unnamed and not node.name.startswith("_"):
             occurrences[node.name] += 1
@@ -284,6 +285,8 @@ def singletons(clause: Clause) -> Iterator[Diagnostic]:
         elif isinstance(node, nodes.String):
             # .puts and .term2string find variables in their texts.
             in_texts.update(_WORD.findall(node.value))
+        elif isinstance(node, nodes.Literal) and not node.arguments:
+            atoms.setdefault(node.functor, node)
     in_head = _in_head(clause)
     what = "plan" if isinstance(clause, nodes.Plan) else "rule"
     once = [name for name, count in occurrences.items() if count == 1 and name not in in_texts]
@@ -302,6 +305,19 @@ def singletons(clause: Clause) -> Iterator[Diagnostic]:
                 first[name].span,
                 _meant_variable(name, occurrences) if number < MOST_ASKED else None,
             )
+        elif (atom := atoms.get(name[0].lower() + name[1:])) is not None and atom.functor not in _heads(
+            clause
+        ):
+            message = (
+                f"`{atom.functor}` is an atom here, and the variable `{name}` of this {what} is not used"
+            )
+            yield problem("singleton-variable", message, atom.span, did_you_mean([name]))
+
+
+def _heads(clause: Clause) -> Iterator[str]:
+    """Yield the names in the head of a clause."""
+    head = clause.trigger if isinstance(clause, nodes.Plan) else clause.head
+    yield from (node.functor for node in walk(head) if isinstance(node, nodes.Literal))
 
 
 def singletons_of_facts(facts: Iterable[nodes.Literal], what: str) -> Iterator[Diagnostic]:

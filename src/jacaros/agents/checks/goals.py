@@ -82,11 +82,22 @@ def _meant_action(call: nodes.InternalAction, found: ByKind, known: KnownActions
     return known.help(call.name) or suggestion(call.name, known.declared)
 
 
+ON_GOALS: Final = frozenset(
+    {".desire", ".drop_desire", ".drop_event", ".drop_future_intention", ".drop_intention", ".fail_goal"}
+    | {".intend", ".resume", ".succeed_goal", ".suspend", ".suspended"}
+)
+"""Internal actions whose first argument is a goal."""
+
+
 def wrong_arguments(found: ByKind, known: KnownActions) -> Iterator[Diagnostic]:
-    """Warn of internal actions with too few or too many arguments."""
+    """Warn of internal actions with too few or too many arguments, and of texts for goals."""
     for node in found.of(nodes.InternalAction):
         action = known.declared.get(node.name)
         count = len(node.arguments)
+        first = node.arguments[0] if node.arguments else None
+        if node.name in ON_GOALS and isinstance(first, nodes.String):
+            message = f'`{node.name}` expects a goal, found the string `"{first.value}"`'
+            yield problem("wrong-arguments", message, first.span, f"write `{first.value}` without quotes")
         if action is not None and not action.takes(count):
             wrong = _arguments_message(node, action.minimum, action.maximum, "internal action")
             if action.maximum is not None and count == action.maximum + 1 and action.result_hint:

@@ -13,7 +13,7 @@ from typing import Final
 
 from jacaros.agents.checks.beliefs import is_misspelt
 from jacaros.agents.checks.formulas import labelled
-from jacaros.agents.checks.goals import PRINTING, KnownActions
+from jacaros.agents.checks.goals import ON_GOALS, PRINTING, KnownActions
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic, Span, problem
 from jacaros.agents.language.nodes import ByKind, names_in, walk
@@ -41,16 +41,11 @@ class Posts:
             for each in triggers
             if each.operator == "+" and each.kind == "!" and isinstance(each.literal, nodes.Literal)
         }
-        printed = [
-            call.arguments
-            for each in found
-            for call in each.of(nodes.InternalAction)
-            if call.name in PRINTING
-        ]
+        calls = [call for each in found for call in each.of(nodes.InternalAction)]
+        printed = [call.arguments for call in calls if call.name in PRINTING]
+        named = [call.arguments[0] for call in calls if call.name in ON_GOALS and call.arguments]
         steps = [step.action for each in found for step in each.of(nodes.ExternalAction)]
-        no_posts = (
-            {id(each.literal) for each in triggers} | set(map(id, steps)) | set(map(id, walk(*printed)))
-        )
+        no_posts = {id(each.literal) for each in triggers} | set(map(id, (*steps, *named, *walk(*printed))))
         self._literals = Counter(
             _key(each) for one in found for each in one.of(nodes.Literal) if id(each) not in no_posts
         )
@@ -108,13 +103,13 @@ def unused_handlers(found: ByKind, known: KnownActions) -> Iterator[Diagnostic]:
 
 
 def _misspelt_plans(found: ByKind, posts: Posts) -> Iterator[Diagnostic]:
-    """Warn of plans for goals that nothing posts whose name is nearly that of a goal with a plan."""
+    """Warn of plans for goals that nothing posts, if one of a similar name or another size is posted and has a plan."""
     posted = [step.goal for step in found.of(nodes.Achieve)]
     heads = [each.literal for each in found.of(nodes.Trigger) if each.kind == "!"]
     with_plan = {_key(head) for head in heads if isinstance(head, nodes.Literal)}
     known = {_key(goal) for goal in posted if isinstance(goal, nodes.Literal)} & with_plan
-    for trigger in (plan.trigger for plan in found.of(nodes.Plan)):
-        literal = trigger.literal
+    for plan in found.of(nodes.Plan):
+        trigger, literal = plan.trigger, plan.trigger.literal
         if (
             (trigger.operator, trigger.kind) != ("+", "!")
             or not isinstance(literal, nodes.Literal)
@@ -124,12 +119,19 @@ def _misspelt_plans(found: ByKind, posts: Posts) -> Iterator[Diagnostic]:
         key = _key(literal)
         if posts.may_post(key):
             continue
-        meant = [name for name, size in sorted(known) if size == key[1] and is_misspelt(key[0], name)]
+        meant = [f"+!{name}" for name, size in sorted(known) if size == key[1] and is_misspelt(key[0], name)]
+        # A plan that begins the rounds of its own goal, as in `+!patrol <- !patrol(1).`, is for others to post.
+        if not any(goal.functor == key[0] for goal in _posted_in(plan)):
+            meant += [f"+!{_text(each)}" for each in sorted(known) if each[0] == key[0]]
         if meant:
             message = f"nothing posts the goal `!{_text(key)}`"
-            yield problem(
-                "unused-handler", message, trigger.span, did_you_mean(f"+!{name}" for name in meant[:1])
-            )
+            yield problem("unused-handler", message, trigger.span, did_you_mean(meant[:1]))
+
+
+def _posted_in(plan: nodes.Plan) -> Iterator[nodes.Literal]:
+    for step in ByKind(plan.body, plan.subplans).of(nodes.Achieve):
+        if isinstance(step.goal, nodes.Literal):
+            yield step.goal
 
 
 def _is_for(trigger: nodes.Trigger, key: Key) -> bool:

@@ -270,6 +270,22 @@ def test_capitalised_names_and_constants_of_python_are_reported():
     assert (found.code, found.help) == ("capital-constant", "write `true` in lower case")
 
 
+def test_an_atom_in_the_place_of_an_unused_variable_is_reported():
+    (found,) = warnings("+!say(Text) <- .print(text).")
+    assert (found.code, found.help) == ("singleton-variable", "did you mean `Text`?")
+    assert warnings("+!say(Text) <- .print(Text, text).") == []
+    assert warnings("+state(State) <- .print(state).") == []
+
+
+def test_a_text_in_the_place_of_a_goal_is_reported():
+    text = '+!g <- .drop_desire("watch").'
+    (found,) = warnings(text)
+    assert (found.code, found.help) == ("wrong-arguments", "write `watch` without quotes")
+    assert found.span is not None
+    assert found.span.column == text.index('"') + 1
+    assert warnings("+!g <- .drop_desire(watch).") == []
+
+
 def test_errors_are_skipped_and_a_run_leaves_out_matters_of_style():
     text = "+!a <- b(; .prnt(x); c(Y).\n+!d <- .prnt(Z).\n!missing."
     file = SourceFile("main.asl", text)

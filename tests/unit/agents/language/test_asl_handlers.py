@@ -60,6 +60,13 @@ def test_a_misspelt_plan_beside_a_right_one_is_reported():
     assert unused(f"{right} +!forawrd(N) <- .print(N). +far <- !forawrd(1).") == []
 
 
+def test_a_plan_of_another_size_than_the_goal_that_is_posted_is_reported():
+    right = "!day(1). +!day(N) <- .wait(10); !day(N + 1)."
+    assert unused(f"{right} +!day <- .stopMAS.") == ["did you mean `+!day/1`?"]
+    assert unused(f"{right} +!day <- !day(1).") == []
+    assert unused(f"{right} +!day <- .stopMAS. +late <- !day.") == []
+
+
 def test_a_fact_that_is_a_goal_is_reported():
     def facts(text: str) -> list[str | None]:
         return [each.help for each in check(program(text), KNOWN) if each.code == "missing-mark"]
@@ -72,6 +79,7 @@ def test_a_fact_that_is_a_goal_is_reported():
     assert facts("go(1). +!go.") == []
     assert facts("go(1). +!go(N) <- .print(N); !go(N + 1).") == ["did you mean `!go`?"]
     assert facts("go(1). +!go(N) <- .print(N). +far <- !go(2).") == []
+    assert facts("go. +!go <- .print(a). +far <- .drop_desire(go).") == ["did you mean `!go`?"]
 
 
 def test_goals_that_no_agent_posts_are_noted():

@@ -98,7 +98,9 @@ def check_beliefs(whole: Whole, around: Surroundings) -> list[Diagnostic]:
     types = [each for one in (whole, *others) for each in one.types or ()]
     elsewhere = words_elsewhere(around.folders, around.files | set(_sources(types)), around.is_lone)
     check = _BeliefCheck([whole, *others], around)
-    return [] if elsewhere is None else list(check.findings(elsewhere))
+    own = {file for flow in check.flows for file in flow.files}  # the others are found under other paths
+    found = () if elsewhere is None else check.findings(elsewhere)
+    return [each for each in found if each.span is None or each.span.file.name in own]
 
 
 class _BeliefCheck:
@@ -116,7 +118,7 @@ class _BeliefCheck:
         observables = observables_of(types) if is_known else None
         flows = [flow_of(program, STANDARD, observables) for program in programs]
         self._flow = Flow(flows, observables or {})
-        self._flows = flows[: len(wholes[0].programs)]
+        self.flows = flows[: len(wholes[0].programs)]
         self._knows_artifacts = observables is not None
         self._programs = programs
         self._is_closed = (
@@ -137,7 +139,7 @@ class _BeliefCheck:
         said = [each.spelled if self._is_closed else each.said for each in self._flow.programs]
         doubtful = elsewhere.union(_OF_THE_SYSTEM, *said)
         yield from self._never_read(doubtful)
-        for program, flow in zip(self._programs, self._flows, strict=False):
+        for program, flow in zip(self._programs, self.flows, strict=False):
             adders = self._flow.adders(flow)
             yield from (*mixed_facts(flow), *told_texts(flow))
             for reader in () if self._is_partial else flow.readers:
@@ -213,7 +215,7 @@ class _BeliefCheck:
         for name, size in (reader.key for flow in self._flow.programs for reader in flow.readers):
             sizes.setdefault(name, set()).add(size)
         unsure = doubtful.union(name for name, _ in self._mentioned)
-        for flow in self._flows:
+        for flow in self.flows:
             for name, adders in flow.adders.items() if self._knows_artifacts else ():
                 if name not in unsure and name in sizes:
                     yield from _of_other_size(name, adders, sizes[name])
