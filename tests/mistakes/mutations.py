@@ -371,7 +371,7 @@ class Clause:
             yield Edit(kind, span.line, found.start(), found.end(), new, equal)
 
     def _arity(self, literal: nodes.Literal, equal: str = "") -> Iterator[Edit]:
-        """Drop the last argument, or add one where there is none, or where the line is even."""
+        """Drop the last argument, or add one where it is missing, or where the line is even."""
         span = literal.span
         if span is None or span.line != span.end_line or literal.functor in ("true", "false"):
             return

@@ -29,5 +29,5 @@ def test_every_true_alarm_has_a_reason() -> None:
 
 
 def _false(found: set[Alarm]) -> list[str]:
-    """Return alarms that nobody has judged, as lines for the table."""
+    """Return alarms that are not in the list of judged ones, as lines for the table."""
     return ["\t".join(alarm) for alarm in sorted(found - true_alarms().keys())]

@@ -58,7 +58,7 @@ PROJECT = """mas yard {
     ids=[
         "number of arguments",
         "string for an atom",
-        "what nobody adds",
+        "what no plan adds",
         "misspelt event",
         "misspelt handler",
         "lower case in an event",

@@ -94,7 +94,7 @@ def test_a_goal_that_stays_suspended_is_a_warning_and_one_that_is_resumed_is_rou
     assert (line.level, line.until) == ("warning", 60.0)
 
 
-def test_faults_breakdowns_interventions_questions_and_lost_localisation_are_told() -> None:
+def test_faults_breakdowns_interventions_questions_and_lost_localisation_are_lines() -> None:
     run: list[Record] = [
         *rounds(3),
         (2.0, "fault", {"robot": "r1", "fault": "ice", "kind": "wheel_slip", "state": "begins"}),

@@ -163,7 +163,7 @@ def _odd_one(facts: Sequence[nodes.Literal], place: int) -> Iterator[Diagnostic]
 
 
 def told_texts(flow: ProgramFlow) -> Iterator[Diagnostic]:
-    """Return warnings about strings that are told: agents refuse them."""
+    """Return warnings about strings in `tell` messages: agents refuse them."""
     for each in flow.texts:
         message = f"`{format_term(each)}` is a string, which is not a belief: the receiver refuses it"
         yield problem(MISMATCH, message, each.span, _in_kind(each, Value("atom")))

@@ -110,7 +110,7 @@ class ProgramFlow:
         is_open: beliefs, plans or agents come from elsewhere at run time.
         tells_unseen: messages may tell other agents anything.
         actions: actions of the environment, with their plans.
-        texts: strings that are told to other agents, which refuse them.
+        texts: strings in `tell` messages, which agents refuse.
         files: the program's own files.
     """
 

@@ -209,7 +209,7 @@ _OFTEN_MEANT: Final = frozenset(
 
 
 def with_mark(action: Key, posts: Posts, known: KnownActions) -> str:
-    """Return the goal or internal action that an unknown action probably is; empty if there is none."""
+    """Return the goal or internal action that an unknown action probably is; empty if it is neither."""
     if action in posts.handled:
         return f"!{action[0]}"
     internal = known.declared.get(f".{action[0]}")

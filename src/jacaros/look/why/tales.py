@@ -271,7 +271,7 @@ class Teller:
         because, goal = reason(failure.why), [*failure.goals.values()][-1]
         told = f"`{cut(shown(goal), LONGEST)}` failed{f': {because}' if because else ''}"
         if is_handled:
-            # Goals that fail for one reason, one after the other, are one tale.
+            # Consecutive goals that fail for one reason are one tale.
             self._tell("handled", failure.t, f"{told}; a plan handled it", key[0], about=_pattern(because))
         else:
             self._tell("lost", failure.t, told, key[0], about=f"{name_of(goal)} {_pattern(because)}")

@@ -18,6 +18,7 @@ STANDARD = {
     ".add_plan": Declaration(arity=(1, 3), brings_in=True, changes_plans=True),
     ".puts": Declaration(arity=(1, 2)),
     ".fail": Declaration(suspends=True),
+    ".drop_desire": Declaration(arity=1, suspends=True),
     ".send": Declaration(arity=(3, 5), suspends=True, body_only=True, performative=1),
     ".broadcast": Declaration(arity=2, suspends=True, body_only=True, performative=0),
     ".remove_plan": Declaration(arity=(1, 2), changes_plans=True),

@@ -344,7 +344,7 @@ def test_a_flag_that_a_plan_adds_may_come():
         ),
     ],
 )
-def test_what_nothing_answers_is_told_of_tests_and_waits(step: str, why: str | None) -> None:
+def test_tests_and_waits_say_why_nothing_answers(step: str, why: str | None) -> None:
     host = mind(f"place(1, 2, 3). !go.\n+!go <- {step}.")
     host.run()
     (_, told_of) = host.logged[-1]

@@ -161,7 +161,7 @@ def test_actions_of_a_lone_program_are_checked_where_it_has_artifacts(
     assert [each.message for each in check(folder, program, "")] == told
 
 
-def test_marks_of_goals_and_operations_are_told_apart(folder: Path) -> None:
+def test_marks_of_goals_and_operations_are_distinguished(folder: Path) -> None:
     program = "!go.\n+!go <- rest; wait(3); !inc; !println(a).\n+!rest <- inc."
     assert [(each.message, each.help) for each in check(folder, program)] == [
         (unknown("rest/0"), "did you mean `!rest`?"),

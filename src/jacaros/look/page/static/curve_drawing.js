@@ -1,7 +1,7 @@
 import { themeColor } from "./elements.js";
 
 const DASHES = [5, 4];
-const HALF_TURN = 180;  // degrees: from 180 to -180 is no way
+const HALF_TURN = 180;  // degrees: 180 and -180 are the same heading
 const COARSE = 1000;  // numbers of a line that are looked at for a place
 const PLACES = 12, STAY = 8, MANY = 40;  // of labels of thresholds: places along the line, and parts of curves that a better one saves
 const MARKS = {

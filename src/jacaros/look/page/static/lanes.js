@@ -22,7 +22,7 @@ export class Lanes {
 
   agent(name) { return known(this.agents, name, () => new AgentLane(name)); }
 
-  /** Who has a resource at `t`, in words; "" for nobody. Of robots with the same resource it is that of the one which `agent` uses. */
+  /** Who has a resource at `t`, in words; "" for no agent. Of robots with the same resource it is that of the one which `agent` uses. */
   owner(resource, t, agent) {
     const found = [...this.resources.values()].filter(({ name }) => name.split("/").at(-1) === resource);
     const { bars } = found.find((each) => each.bars.whats.some((what) => what.agent === agent)) ?? found[0] ?? {}, index = bars?.at(t, 0) ?? -1;

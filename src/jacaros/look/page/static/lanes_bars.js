@@ -8,7 +8,7 @@ export const KIND = { runs: 0, acts: 1, waits: 2, suspended: 3, done: 4, handled
 const KINDS = 8, LEVELS = 6;
 
 /**
- * A row of bars, one after the other in time.
+ * A row of bars in the order of time.
  *
  * Nodes above them hold how many seconds each kind took (of bars without a length: how many there are), so a range of any
  * length is drawn from a few thousand of them. The last bar may be open: its end is infinite, and no node counts it.

@@ -211,7 +211,7 @@ export class LanesView {
     this.tip.style.top = `${below + offsetHeight < innerHeight ? below : below - offsetHeight - row.height - 14}px`;
   }
 
-  /** The bars that are told about together with one: of refused plans all in view, of failures those of one mark. */
+  /** The bars that the tip describes together with one: of refused plans all in view, of failures those of one mark. */
   together({ bars, sort }, index) {
     const { axis } = this, from = sort === "refusals" ? axis.from : bars.starts[index], to = sort === "refusals" ? axis.to : from;
     let [first, end] = [index, index + 1];

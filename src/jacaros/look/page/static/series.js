@@ -5,7 +5,7 @@ const BLOCK = 16;  // values of one level of the pyramid that make one of the ne
 /**
  * A number over time, ready to be drawn at any scale.
  *
- * The track has `times` and `values`; NaN is no value. Above it stands a pyramid of the smallest and largest values of blocks,
+ * The track has `times` and `values`; NaN marks a missing value. Above it stands a pyramid of the smallest and largest values of blocks,
  * which grows with the track, so that the extremes of any stretch cost a few comparisons.
  */
 export class Series {
