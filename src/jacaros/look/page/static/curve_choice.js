@@ -18,11 +18,12 @@ export class CurveChoice {
     return (chosen.length ? chosen : this.keys?.length === 0 ? [] : this.typical()).map((key) => this.sources.get(key));
   }
 
-  /** What contexts compare, batteries, and where the only robot is. */
+  /** What contexts compare, batteries first, and where the only robot is. */
   typical() {
     if (this.typicalOf === this.sources.version) return this.found;
     this.typicalOf = this.sources.version;
     const all = this.sources.shown(), robots = all.filter(({ key }) => key.startsWith("robot ")), compared = this.thresholds.compared();
+    compared.sort((one, other) => (other.name === "battery") - (one.name === "battery"));
     const where = robots.filter(({ name, of }) => (name === "x" || name === "y") && robots.every((each) => each.of === of));
     const batteries = compared.some(({ name }) => name === "battery") ? [] : robots.filter(({ name }) => name === "battery");
     const found = [...[...compared, ...batteries].slice(0, MOST - where.length), ...where];

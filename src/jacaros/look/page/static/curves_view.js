@@ -114,7 +114,8 @@ export class CurvesView {
       }
     }
     for (const curve of curves) drawing.curve(curve, scales[curve.side], curve.color);
-    for (const label of labels) drawing.thresholdLabel(...label, this.places);
+    // Robots of one program have the same thresholds.
+    for (const label of new Map(labels.map((each) => [`${each[0]} ${each[1]}`, each])).values()) drawing.thresholdLabel(...label, this.places);
   }
 
   seriesOf(source) {

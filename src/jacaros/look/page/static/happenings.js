@@ -44,9 +44,10 @@ export function sortOf(event, data) {
   return event === "docked" || event === "task" || event === "intervention" ? event : undefined;
 }
 
-/** How loud a line of the log is: a lost goal as loud as a failure of a robot. */
+/** How loud a line of the log is: a lost goal as loud as a failure of a robot, a safe stop less. */
 export function toneOf(event, { level, text, code }) {
   if (event === "ended" && code) return "failure";
+  if (event === "command_timeout") return "warning";  // the robot stopped, as it should
   if (event !== "log" || level === "info") return undefined;
   return level === "error" || text.includes("has no plan for its failure") ? "failure" : "warning";
 }
