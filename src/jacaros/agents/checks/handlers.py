@@ -77,16 +77,8 @@ def unused_handlers(found: ByKind, known: KnownActions) -> Iterator[Diagnostic]:
         return
     posts = Posts(found)
     yield from _misspelt_plans(found, posts)
-    for plan in found.of(nodes.Plan):
-        trigger, literal = plan.trigger, plan.trigger.literal
-        if (
-            trigger.operator != "-"
-            or not trigger.kind
-            or not isinstance(literal, nodes.Literal)
-            or not _is_own(literal)
-        ):
-            continue
-        key = _key(literal)
+    for plan, literal in _of_goals(found.of(nodes.Plan), "-"):
+        trigger, key = plan.trigger, _key(literal)
         asked = any(
             each.kind == "?" and _is_for(each, key) and each.operator == "+"
             for each in found.of(nodes.Trigger)
@@ -108,16 +100,9 @@ def _misspelt_plans(found: ByKind, posts: Posts) -> Iterator[Diagnostic]:
     heads = [each.literal for each in found.of(nodes.Trigger) if each.kind == "!"]
     with_plan = {_key(head) for head in heads if isinstance(head, nodes.Literal)}
     known = {_key(goal) for goal in posted if isinstance(goal, nodes.Literal)} & with_plan
-    for plan in found.of(nodes.Plan):
-        trigger, literal = plan.trigger, plan.trigger.literal
-        if (
-            (trigger.operator, trigger.kind) != ("+", "!")
-            or not isinstance(literal, nodes.Literal)
-            or not _is_own(literal)
-        ):
-            continue
-        key = _key(literal)
-        if posts.may_post(key):
+    for plan, literal in _of_goals(found.of(nodes.Plan), "+"):
+        trigger, key = plan.trigger, _key(literal)
+        if trigger.kind != "!" or posts.may_post(key):
             continue
         meant = [f"+!{name}" for name, size in sorted(known) if size == key[1] and is_misspelt(key[0], name)]
         # A plan that begins the rounds of its own goal, as in `+!patrol <- !patrol(1).`, is for others to post.
@@ -126,6 +111,19 @@ def _misspelt_plans(found: ByKind, posts: Posts) -> Iterator[Diagnostic]:
         if meant:
             message = f"nothing posts the goal `!{_text(key)}`"
             yield problem("unused-handler", message, trigger.span, did_you_mean(meant[:1]))
+
+
+def _of_goals(plans: Iterable[nodes.Plan], operator: str) -> Iterator[tuple[nodes.Plan, nodes.Literal]]:
+    """Yield the plans ``+!g`` and ``+?g``, or with ``-``, that are not of a library of JaCaROS, with their goals."""
+    for plan in plans:
+        literal = plan.trigger.literal
+        if (
+            plan.trigger.operator == operator
+            and plan.trigger.kind
+            and isinstance(literal, nodes.Literal)
+            and _is_own(literal)
+        ):
+            yield plan, literal
 
 
 def _posted_in(plan: nodes.Plan) -> Iterator[nodes.Literal]:
@@ -184,15 +182,8 @@ def never_posted(
     if any(is_open(each, known) for each in found):
         return
     posts = Posts(*found)
-    for plan in (plan for each in programs for plan in each.plans):
-        trigger, literal = plan.trigger, plan.trigger.literal
-        if (
-            trigger.operator != "+"
-            or not trigger.kind
-            or not isinstance(literal, nodes.Literal)
-            or not _is_own(literal)
-        ):
-            continue
+    for plan, literal in _of_goals((plan for each in programs for plan in each.plans), "+"):
+        trigger = plan.trigger
         is_test = any(item.functor == "test" for item in labelled(plan))
         if trigger.span is None or is_test or posts.may_post(_key(literal)) or not is_project(trigger.span):
             continue

@@ -102,3 +102,20 @@ def test_an_artifact_beside_those_that_the_library_focuses_is_reported(tmp_path:
 def test_agents_with_the_same_program_count_as_one(tmp_path: Path) -> None:
     both = "focus: lab.l }\n agent bob: a.asl { focus: lab.c"
     assert found(tmp_path, both, COUNTS) == []
+
+
+def test_operations_of_a_workspace_that_only_another_agent_joins_are_reported(tmp_path: Path) -> None:
+    def reported(bob: str) -> list[tuple[str, str | None]]:
+        (tmp_path / "b.asl").write_text(bob, encoding="utf-8")
+        return found(
+            tmp_path, "focus: lab.c }} agent bob: b.asl {{".replace("{{", "{").replace("}}", "}"), COUNTS
+        )
+
+    assert reported("!go.\n+!go <- inc.") == [
+        (
+            "`inc` is an operation of `c` in workspace `lab`, which agent `bob` does not join",
+            "write `focus: lab.c` in the declaration of agent `bob`",
+        )
+    ]
+    assert reported('!go.\n+!go <- joinWorkspace("lab", _); inc.') == []
+    assert reported("!go.\n+!go <- .print(go).") == []

@@ -78,7 +78,7 @@ def _unknown_operations(
 ) -> Iterator[Diagnostic]:
     if any(_is_open(program) for _, program in programs) or any(map(_offers_more, types)):
         return
-    offered = _Offered(types)
+    offered = Offered(types)
     for agent, program in programs:
         posts = Posts(ByKind(*clauses_of(program)))
         own = [] if agent.agent_class else [plan for plan in program.plans if not _is_of_library(plan)]
@@ -96,7 +96,7 @@ def operations_as_goals(types: "Sequence[type[Artifact]]") -> Callable[[Diagnost
 
     @cache
     def has(name: str, arity: int) -> bool:
-        return _Offered(types).has(name, arity)
+        return Offered(types).has(name, arity)
 
     def helped(warning: Diagnostic) -> Diagnostic:
         goal = _GOAL.fullmatch(warning.message) if warning.code == "unknown-goal" else None
@@ -131,7 +131,7 @@ def _offers_more(artifact_type: "type[Artifact]") -> bool:
     return False
 
 
-class _Offered:
+class Offered:
     """The operations that the artifacts of a project offer to agents."""
 
     def __init__(self, types: "Sequence[type[Artifact]]") -> None:
@@ -177,7 +177,7 @@ def lacks_actions(programs: Sequence[nodes.Program], types: "Sequence[type[Artif
     """Return whether actions of programs may belong to artifacts other than of these types."""
     if types is None or any(map(_is_open, programs)) or any(map(_offers_more, types)):
         return True
-    offered = _Offered(types)
+    offered = Offered(types)
     actions = (node.action for each in programs for node in nodes_in(nodes.ExternalAction, each.plans))
     return any(offered.lacks(each) for each in actions if isinstance(each, nodes.Literal))
 

@@ -359,7 +359,12 @@ class _Checked:
         every = [
             (each, read[each.source_path]) for each in self.deployment.agents if each.source_path in read
         ]
-        return check_focus(self.deployment, every or self.programs, properties)
+
+        @cache
+        def offers(kind: str, name: str, arity: int) -> bool:
+            return find_type(kind).interface.operations.find(name, arity) is not None
+
+        return check_focus(self.deployment, every or self.programs, properties, offers)
 
     def check_goals(self) -> None:
         """Note plans for goals that no agent posts, in the folder of the project, unless parts of it are not run."""

@@ -12,40 +12,54 @@ from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.agents.language.nodes import ByKind, walk
 from jacaros.agents.mind.actions.internal_action import STANDARD
-from jacaros.runtime.mas.checks.artifacts import type_of
+from jacaros.runtime.mas.checks.artifacts import Offered, type_of
 from jacaros.runtime.mas.deployment import AgentSpec, Deployment
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     Properties = Callable[[str], Set[str] | None]
+    Offers = Callable[[str, str, int], bool]
 
 CODE: Final = "unfocused-artifact"
 _FOCUSING: Final = frozenset({"focus", "focusWhenAvailable"})
 _USING: Final = "use_artifact"
 """The goal of the library that makes and focuses an artifact."""
 _MAIN: Final = "main"
+_REACHING: Final = _FOCUSING | {"joinWorkspace", "makeArtifact", "lookupArtifact"}
+"""Actions by which an agent may reach artifacts that the project does not give it."""
 _WORD: Final = re.compile(r"\w+")
 
 Programs = Sequence[tuple[AgentSpec, nodes.Program]]
 
 
-def check_focus(deployment: Deployment, programs: Programs, properties: "Properties") -> list[Diagnostic]:
-    """Return warnings about properties of artifacts that agents do not focus, and artifacts that no agent can use.
+def check_focus(
+    deployment: Deployment, programs: Programs, properties: "Properties", offers: "Offers"
+) -> list[Diagnostic]:
+    """Return warnings about properties of artifacts that agents do not focus, and artifacts that agents cannot use.
 
     Args:
         deployment: the project.
         programs: all its agents with their programs.
         properties: returns the names of properties and signals of an artifact type; None if they are not known.
+        offers: returns whether an artifact type has an operation of a name and a number of arguments.
     """
-    return [*_out_of_reach(deployment, programs), *_Focus(deployment, programs, properties).findings()]
+    joined = {name for agent, _ in programs for name in agent.join}
+    return [
+        *_out_of_reach(deployment, programs, joined),
+        *(
+            each
+            for agent, program in programs
+            for each in _not_joined(deployment, agent, program, joined, offers)
+        ),
+        *_Focus(deployment, programs, properties).findings(),
+    ]
 
 
 # ---- workspaces
 
 
-def _out_of_reach(deployment: Deployment, programs: Programs) -> Iterator[Diagnostic]:
-    joined = {name for agent, _ in programs for name in agent.join}
+def _out_of_reach(deployment: Deployment, programs: Programs, joined: Set[str]) -> Iterator[Diagnostic]:
     named = {word for _, program in programs for word in _words(program)}
     for workspace in deployment.workspaces:
         for artifact in workspace.artifacts:
@@ -55,6 +69,32 @@ def _out_of_reach(deployment: Deployment, programs: Programs) -> Iterator[Diagno
             message = f"no agent can use `{artifact.name}`: none joins workspace `{workspace.name}`"
             help = f"write `focus: {workspace.name}.{artifact.name}` in the declaration of an agent"
             yield Diagnostic("warning", message, artifact.span, help, CODE)
+
+
+def _not_joined(
+    deployment: Deployment, agent: AgentSpec, program: nodes.Program, joined: Set[str], offers: "Offers"
+) -> Iterator[Diagnostic]:
+    """Warn of operations of workspaces that only other agents join; a program that may join others is skipped."""
+    actions = [action for plan in program.plans for action in _actions(plan)]
+    if not _REACHING.isdisjoint(each.functor for each in actions) or agent.agent_class:
+        return
+    everywhere = Offered(())
+    for action in {each.functor: each for each in reversed(actions) if is_own(each)}.values():
+        having = [
+            (workspace.name, artifact.name)
+            for workspace in deployment.workspaces
+            for artifact in workspace.artifacts
+            if workspace.name in joined | {_MAIN}
+            and offers(artifact.type_name, action.functor, len(action.arguments))
+        ]
+        is_near = any(name == _MAIN or name in agent.join for name, _ in having)
+        if not having or is_near or everywhere.has(action.functor, len(action.arguments)):
+            continue
+        (workspace, artifact), who = having[0], agent.declared_name
+        where = f"`{artifact}` in workspace `{workspace}`"
+        message = f"`{action.functor}` is an operation of {where}, which agent `{who}` does not join"
+        help = f"write `focus: {workspace}.{artifact}` in the declaration of agent `{who}`"
+        yield Diagnostic("warning", message, action.span, help, CODE)
 
 
 def _words(program: nodes.Program) -> Iterator[str]:
