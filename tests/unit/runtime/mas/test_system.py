@@ -24,7 +24,7 @@ ENDLESS = {"until_idle": False}
         ("p(1).", {}, [], 0, 0.0),
         ('!go. +!go <- .wait("+never"); .print(late).', {}, [], 0, 0.0),
         ("!go. +!go <- .wait(1000); .print(tick); !go.", {"seconds": 3.5}, ["tick"] * 3, 0, 3.5),
-        ("!go. +!go <- !go.", {"seconds": 0.002}, [], 0, 0.002),
+        ("!go. +!go <- !go.  // jacaros: allow loop-without-wait", {"seconds": 0.002}, [], 0, 0.002),
     ],
     ids=["stop", "announced stop", "idle", "no goals", "wait for nothing", "time limit", "endless plan"],
 )
