@@ -119,3 +119,10 @@ def test_operations_of_a_workspace_that_only_another_agent_joins_are_reported(tm
     ]
     assert reported('!go.\n+!go <- joinWorkspace("lab", _); inc.') == []
     assert reported("!go.\n+!go <- .print(go).") == []
+
+
+def test_a_file_of_plans_that_others_include_is_not_reported(tmp_path: Path) -> None:
+    made = '+!made <- makeArtifact("c", "artifacts.Counter", [], _).'
+    assert found(tmp_path, None, f"{made}\n{COUNTS}") == []
+    (reported,) = found(tmp_path, None, f"!made.\n{made}\n{COUNTS}")
+    assert "which agent `a` does not focus" in reported[0]

@@ -346,7 +346,10 @@ class _Checked:
         from jacaros.runtime.mas.checks.focusing import check_focus  # here: see `of_artifacts`
         from jacaros.runtime.mas.checks.observables import observables_of
 
-        if not types or self.deployment.ignored:
+        is_part = not self.deployment.agents and not any(program.goals for _, program in self.programs)
+        if (
+            not types or self.deployment.ignored or is_part
+        ):  # plans that other programs include, and that those focus for
             return []
 
         @cache

@@ -157,9 +157,10 @@ class _Focus:
     def _warning(self, agent: AgentSpec, reader: Reader, kind: str) -> Diagnostic:
         found = [(space, each.name) for (space, _), each in self._declared.items() if each.type_name == kind]
         artifact = found[0][1] if found else kind
-        message = f"`{reader.key[0]}` comes from artifact `{artifact}`, which agent `{agent.declared_name}` does not focus"
+        who = agent.declared_name or agent.name
+        message = f"`{reader.key[0]}` comes from artifact `{artifact}`, which agent `{who}` does not focus"
         help = (
-            f"write `focus: {'.'.join(found[0])}` in the declaration of agent `{agent.declared_name}`"
+            f"write `focus: {'.'.join(found[0])}` in the declaration of agent `{who}`"
             if found and agent.span is not None
             else "focus the artifact after it is made: `makeArtifact(..., Id); focus(Id)`"
         )
