@@ -16,6 +16,7 @@ JACAROS = [sys.executable, "-m", "jacaros"]
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="asks Linux for its pipes")
 
 FLOOD = """
+// jacaros: ignore-file loop-without-wait
 !count(0).
 !work.
 +!count(N) <- .print("line ", N, " of a text that fills the pipe soon"); !count(N + 1).

@@ -75,9 +75,8 @@ def _similar(mind: "Mind", wanted: Term, untaken: dict[Functor, Term]) -> str:
     if symbol in mind.beliefs and mind.beliefs[symbol].rows:
         return ""
     for other, fact in untaken.items():
-        if other.name == symbol.name or (
-            other.arity == symbol.arity and is_misspelt(symbol.name, other.name)
-        ):
+        # One of this name with another number of arguments may be a signal, which leaves no belief.
+        if other.arity == symbol.arity and is_misspelt(symbol.name, other.name):
             return f"the belief is `{text(excerpt(fact))}`"
     return ""
 

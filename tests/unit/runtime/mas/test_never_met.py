@@ -28,10 +28,6 @@ def told(folder: Path, program: str) -> list[str]:
             "`+mdoe(go)` has not happened (a.asl:2): the belief is `mode(go)`",
         ),
         (
-            "!go. +!go <- +at(1, 2).\n+at(X) <- .print(X).",
-            "`+at(X)` has not happened (a.asl:2): the belief is `at(1,2)`",
-        ),
-        (
             "!go. +!go <- +at(1, 2).\n+at(x, y) <- .print(a).",
             "`+at(x,y)` has not happened (a.asl:2): the belief is `at(1,2)`: a number, not an atom",
         ),
