@@ -3,7 +3,7 @@ import { drawName } from "./robot_drawing.js";
 const HIGH = 15, GAP = 5;  // pixels of a line of text, and between a robot and its name
 const SIDES = [[0, -1], [0, 1], [1, 0], [-1, 0]];  // above, below, right, left
 
-/** The names of robots on the map: beside one another, not on top; where there is no room, the number of the robot. */
+/** The names of robots on the map: beside one another, not on top; in a crowd, the number of the robot. */
 export class MapNames {
   constructor() {
     this.widths = new Map();
