@@ -270,6 +270,18 @@ def test_a_program_of_two_projects_may_need_the_beliefs_of_either(tmp_path: Path
         assert not [each for each in check_files([path]).diagnostics if each.code in CODES]
 
 
+def test_a_belief_that_another_project_declares_is_added_under_any_path(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "robot.asl").write_text("!go. +!go : home(X) <- .print(X). +!go.", encoding="utf-8")
+    (tmp_path / "without.jcm").write_text("mas m { agent a : robot.asl }", encoding="utf-8")
+    declared = "mas m { agent a : robot.asl { beliefs: home(dock) } }"
+    (tmp_path / "with.jcm").write_text(declared, encoding="utf-8")
+    monkeypatch.chdir(tmp_path.parent)
+    for path in (tmp_path, Path(tmp_path.name), Path(tmp_path.name, "without.jcm")):
+        assert not [each for each in check_files([path]).diagnostics if each.code in CODES]
+
+
 @pytest.mark.parametrize(
     ("field", "help"),
     [

@@ -37,8 +37,11 @@ function merged(some, others) {
 
 const page = startPage({ live: false, commands: NO_COMMANDS });
 page.setTitle(document.title);
+const nothing = document.getElementById("nothing"), words = nothing.textContent;
+nothing.textContent = "Loading the recording …";
 try {
   page.run.addAll(await records());
+  nothing.textContent = words;
   if (fragment().has("t")) page.time.go(Number(fragment().get("t")) || 0);
   page.show();
 } catch (error) {

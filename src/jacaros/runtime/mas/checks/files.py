@@ -412,7 +412,8 @@ class _Checked:
     def _others(self) -> "list[Whole] | None":
         """Return the other projects that run these programs; None if one of them is not known."""
         found: list[Whole] = []
-        own = {agent.source_path.resolve() for agent, _ in self.programs}
+        # Under the same path, a program counts as the same one.
+        own = {agent.source_path.resolve(): agent.source_path for agent, _ in self.programs}
         base = self.deployment.base_path.resolve()
         for path in (each for folder in (base, *base.parents[:2]) for each in folder.iterdir()):
             if path.suffix not in PROJECTS or path in self._findings.files:
@@ -421,11 +422,15 @@ class _Checked:
                 deployment = read_project(path).deployment
             except ProjectError:
                 continue
-            if own.isdisjoint(agent.source_path.resolve() for agent in deployment.agents):
+            agents = [
+                replace(each, source_path=own.get(each.source_path.resolve(), each.source_path))
+                for each in deployment.agents
+            ]
+            if not any(each.source_path in own.values() for each in agents):
                 continue
             folders = (deployment.base_path, *deployment.source_paths)
             other = _Checked(deployment, folders, Findings(unseen=self._findings.unseen))
-            for agent in deployment.agents:
+            for agent in agents:
                 if agent.agent_class or agent.is_python or not other.check_program(agent):
                     return None
             found.append(other._whole())
