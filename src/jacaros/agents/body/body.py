@@ -1,5 +1,6 @@
 """The body of an agent with a mind: it reads acts, and runs them as operations or as actions of the environment."""
 
+import asyncio
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache, partial
@@ -35,6 +36,7 @@ from jacaros.agents.terms.values import (
 )
 from jacaros.artifacts.env.environment import Environment
 from jacaros.artifacts.env.errors import ArtifactId, OperationFailed, UnknownArtifact
+from jacaros.artifacts.env.execution import OperationExecution
 from jacaros.artifacts.env.operation import OperationOutcome, OperationRequest
 from jacaros.artifacts.env.ports import ENDED, OnOutcome, UnderWay, Workspace
 from jacaros.artifacts.env.values import Atom, Structure
@@ -572,6 +574,11 @@ class AgentBody(AgentPresence):
             return
         if act.id in self._pending:
             self._pending[act.id] = handle
+
+    def task_of(self, act_id: int) -> "asyncio.Task[None] | None":
+        """Return the task of an action's operation, which ends with its clean-up; None if it has none here."""
+        handle = self._pending.get(act_id)
+        return handle.task if isinstance(handle, OperationExecution) else None
 
     def cancel_act(self, act_id: int) -> None:
         """Cancel the operation of an action without reporting its end; or release the resources of a plan."""

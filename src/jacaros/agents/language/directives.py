@@ -29,6 +29,7 @@ from jacaros.agents.language.cursor import ProgramNames, SyntaxPanic
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span
 from jacaros.agents.language.lowering import fresh_names, lower
 from jacaros.agents.language.nodes import is_ground, rebuilt
+from jacaros.agents.language.offers import offer_of
 from jacaros.agents.language.plan_parser import PlanParser
 from jacaros.agents.language.program_parser import ProgramParser, WrongDirective
 from jacaros.agents.language.term_parser import Namespaces
@@ -347,7 +348,7 @@ ReadSource = Callable[[str, str], tuple[str, str]]
 """``read(path, including_name) -> (name, text)``: finds an included file; raises FileNotFoundError,
 whose text says where it was searched."""
 
-_SIMPLE: Final = ("include", "namespace", "register_function")
+_SIMPLE: Final = ("include", "namespace", "register_function", "offer")
 _DEEPEST: Final = 40
 """Maximum depth of includes, so that parsing them does not exhaust Python's stack."""
 _MOST_INCLUDES: Final = 10_000
@@ -385,6 +386,7 @@ class DirectiveProcessor:
             "include": self._include,
             "namespace": self._declare_namespace,
             "register_function": self._register,
+            "offer": self._offer,
         }.get(name)
         try:
             if run is not None:
@@ -533,6 +535,12 @@ class DirectiveProcessor:
             case _:
                 message = "`register_function` expects a name, a number of arguments and a rule"
                 raise WrongDirective(message, '{ register_function("my.sum", 2, "sum") }')
+
+    def _offer(self, parser: ProgramParser, directive: nodes.Literal, section: nodes.Section) -> None:
+        offer = offer_of(directive)
+        if any((each.what, each.key) == (offer.what, offer.key) for each in section.offers):
+            raise WrongDirective(f"the {offer.what} {offer.key} is offered twice", "leave out one of them")
+        section.offers.append(offer)
 
     # patterns
 

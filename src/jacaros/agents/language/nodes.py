@@ -11,10 +11,13 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Iterator
 from dataclasses import KW_ONLY, dataclass, field, fields
-from typing import Any, ClassVar, Final, TypeVar, dataclass_transform
+from typing import TYPE_CHECKING, Any, ClassVar, Final, TypeVar, dataclass_transform
 
 from jacaros.agents.language.diagnostics import Span
 from jacaros.agents.terms.values import Term as Value
+
+if TYPE_CHECKING:
+    from jacaros.agents.language.offers import Offer
 
 
 @dataclass_transform(frozen_default=True)
@@ -384,6 +387,7 @@ class Program:
     goals: tuple[Literal, ...] = ()
     plans: tuple[Plan, ...] = ()
     functions: tuple[RegisteredFunction, ...] = ()
+    offers: tuple[Offer, ...] = ()
 
 
 @dataclass
@@ -394,6 +398,7 @@ class Section:
     goals: list[Literal] = field(default_factory=list)
     plans: list[Plan] = field(default_factory=list)
     functions: list[RegisteredFunction] = field(default_factory=list)
+    offers: list[Offer] = field(default_factory=list)
 
     def extend(self, other: Section) -> None:
         """Append the clauses of *other*."""

@@ -11,7 +11,7 @@ from jacaros.agents.language.nodes import UNDECLARED, parts_of
 from jacaros.agents.language.plan_parser import CONTROL, PlanParser
 from jacaros.agents.language.term_parser import Namespaces
 
-_DIRECTIVE_WORDS: Final = frozenset({"begin", "end", "include", "namespace", "register_function"})
+_DIRECTIVE_WORDS: Final = frozenset({"begin", "end", "include", "namespace", "register_function", "offer"})
 _STARTS: Final = frozenset({"atom", "variable", "~", "!", "{", "@", "+", "-", "^"})
 """Tokens that may begin a clause."""
 

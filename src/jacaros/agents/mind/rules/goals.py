@@ -32,6 +32,7 @@ from jacaros.agents.mind.state.triggers import Goal, Trigger, literal_of, own_an
 from jacaros.agents.terms.substitution import rename
 from jacaros.agents.terms.unifier import undo, unify
 from jacaros.agents.terms.values import BY_SELF, Term, atom, functor, structure
+from jacaros.runtime.trace import Cause
 
 BY_SUSPEND, _BY_RESUME = atom("suspend_ia"), atom("resume_ia")
 PREEMPTED = functor("preempted", 1)
@@ -401,8 +402,11 @@ class WatchedGoal:
         goal: an atom or structure.
         on_end: called when the goal is achieved or has failed.
         on_dropped: called when it is over without having been achieved or having failed.
+        cause: what led to it, outside the agent.
 
     Attributes:
+        identity: what the bottom frame of its intentions serves.
+        arguments: of the goal. When it is achieved, they have their values.
         achieved: the goal was achieved.
         failed: it failed, and no plan handled the failure.
         reason: why it failed, None if that is not known.
@@ -417,6 +421,7 @@ class WatchedGoal:
         goal: Term,
         on_end: Callable[[], None] = _nothing,
         on_dropped: Callable[[], None] = _nothing,
+        cause: Cause | None = None,
     ) -> None:
         symbol, arguments, annotations = parts(rename(goal))
         if symbol is None:
@@ -427,13 +432,14 @@ class WatchedGoal:
         self.reason: FailureReason | None = None
         self._on_end, self._on_dropped = on_end, on_dropped
         posted = (trigger("+", "!", symbol), *arguments)
-        self._bottom = (_WATCHED, float(id(self)))
-        intention = Intention(agent)
+        self.arguments = arguments
+        self.identity = (_WATCHED, float(id(self)))
+        intention = Intention(agent, cause)
         intention.on_failed, intention.on_end = (self._intention_failed, ()), (self._intention_ended, ())
-        frame: Frame = [self._reached, self._bottom, BY_SELF, agent.trail.serial, _BOTTOM]
+        frame: Frame = [self._reached, self.identity, BY_SELF, agent.trail.serial, _BOTTOM]
         intention.frames.append(frame)
         given = own_annotations(annotations)
-        agent.post((supervised(agent, intention, posted, given), intention, given, None))
+        agent.post((supervised(agent, intention, posted, given), intention, given, cause))
         agent.architecture.ready()
 
     @property
@@ -446,7 +452,7 @@ class WatchedGoal:
         return [
             intention
             for intention in self.agent.alive.values()
-            if intention.frames and intention.frames[0][GOAL] == self._bottom
+            if intention.frames and intention.frames[0][GOAL] == self.identity
         ]
 
     def _reached(self, agent: Circumstance, frame: Frame) -> None:

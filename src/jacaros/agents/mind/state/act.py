@@ -173,6 +173,19 @@ class MindObserver(Protocol):
         """Hear that plans came or went."""
 
 
+class Callers(Protocol):
+    """Hears what an agent tells the callers outside who gave it goals; it changes nothing and raises nothing."""
+
+    def accepted(self, intention: Intention) -> None:
+        """Hear that the goal of an intention is accepted."""
+
+    def progressed(self, intention: Intention, fraction: float, note: str) -> None:
+        """Hear how far the goal of an intention is, from 0 to 1."""
+
+    def announced(self, event: Term) -> None:
+        """Hear of an event that the program offers."""
+
+
 # The port of a mind to its host (Jason's agent architecture).
 #
 # A mind does no input or output of its own. It gets input through `Mind.receive`, `Mind.perceive` and `Mind.complete`, and

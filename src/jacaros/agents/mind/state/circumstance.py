@@ -6,7 +6,7 @@ from dataclasses import InitVar, dataclass, field
 from typing import Any, Literal, NamedTuple, Protocol
 
 from jacaros.agents.language.diagnostics import Span
-from jacaros.agents.mind.state.act import Architecture, MindObserver, Percept, SpeechAct
+from jacaros.agents.mind.state.act import Architecture, Callers, MindObserver, Percept, SpeechAct
 from jacaros.agents.mind.state.belief_base import MANY_NAMES, BeliefTables, Table
 from jacaros.agents.mind.state.budget import Budget, Options, budgets
 from jacaros.agents.mind.state.intention import (
@@ -183,6 +183,7 @@ class Observers:
         step: may hold the agent before an event or a step, or None, see `jacaros.agents.mind.rules.cycle.observe_steps`.
         mind: observes plans, beliefs and messages, or None; see `jacaros.agents.mind.rules.meta_events.observe_mind`.
         hear_beliefs: whether one of the last two is set.
+        callers: hears of goals that callers outside gave, and of events for them, or None.
     """
 
     goal: Callable[[str, Goal, int, int, str], None] | None = None
@@ -190,6 +191,7 @@ class Observers:
     step: StepObserver | None = None
     mind: MindObserver | None = None
     hear_beliefs: bool = False
+    callers: Callers | None = None
 
 
 @dataclass(slots=True, eq=False)

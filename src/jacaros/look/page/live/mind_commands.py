@@ -1,31 +1,21 @@
 """Commands for agents: beliefs, goals, messages, and a console of AgentSpeak."""
 
 from collections.abc import Callable, Mapping, Sequence
-from itertools import count, islice
+from itertools import count
 from typing import Literal
 
 from jacaros.agents.body.values import UNKEPT, to_term
 from jacaros.agents.language.loader import parse_term
 from jacaros.agents.language.lowering import lower_value
-from jacaros.agents.mind.actions.internal_action import ActionError
 from jacaros.agents.mind.mind import Mind
-from jacaros.agents.mind.rules.context import Impure, ReadOnly, reading
 from jacaros.agents.mind.state.act import SpeechAct
-from jacaros.agents.mind.state.budget import SearchLimit
 from jacaros.agents.mind.state.plan import Failure
-from jacaros.agents.terms.substitution import resolve
-from jacaros.agents.terms.text import excerpt
-from jacaros.agents.terms.text import text as term_text
-from jacaros.agents.terms.values import Term, Var
-from jacaros.look.page.live.commands import LONGEST, YOU, Command, Refused, Text
-from jacaros.look.page.live.timing import within
-from jacaros.runtime.mas.embedding.running_agent import OpenMind, question
+from jacaros.look.page.live.commands import YOU, Command, Refused, Text
+from jacaros.runtime.mas.embedding.running_agent import OpenMind
 from jacaros.runtime.mas.system import System
+from jacaros.serving.callers import RequestError
+from jacaros.serving.questions import ask
 
-ANSWERS = 20
-"""Number of answers shown for a query."""
-QUESTION_STEPS, QUESTION_TIME = 10_000, 0.1
-"""Limits of a query: steps (see `jacaros.agents.mind.rules.context.reading`), and seconds."""
 Performative = Literal[
     "tell", "untell", "achieve", "unachieve", "signal", "askOne", "askAll", "tellHow", "untellHow"
 ]
@@ -104,36 +94,11 @@ def mind_commands(system: System) -> Mapping[str, Command]:
 
 
 def _ask(mind: OpenMind, formula: str) -> str:
-    """Return the answers of a formula, one per line: ``X = 3, Y = kitchen``; ``yes`` or ``no`` without variables.
-
-    A question changes nothing, whatever it calls; see `jacaros.agents.mind.rules.context`.
-    """
-    agent = mind.mind
-    if agent.running:
-        raise Refused("the agent is in the middle of a step: ask again")
-    with reading(agent, QUESTION_STEPS) as view:
-        answers = within(QUESTION_TIME, lambda: _answers(view, formula))
-    if answers is None:
-        raise Refused(f"the question takes longer than {QUESTION_TIME} s; ask a simpler one")
-    return answers
-
-
-def _answers(view: ReadOnly, formula: str) -> str:
-    term, names = question(formula)
-    shown = {name: value for name, value in names.items() if name[0] != "_"}
+    """Return the answers of a formula, one per line: ``X = 3, Y = kitchen``; ``yes`` or ``no`` without variables."""
     try:
-        lines = [_values(shown) or "yes" for _ in islice(view.answers(term), ANSWERS + 1)]
-    except (Impure, SearchLimit, ActionError, Failure, RecursionError) as error:
-        raise Refused(str(error)) from None
-    if not shown:
-        lines = lines[:1]
-    return "\n".join([*lines[:ANSWERS], *(["..."] if len(lines) > ANSWERS else [])]) or "no"
-
-
-def _values(shown: Mapping[str, Term]) -> str:
-    """Return the bound variables: ``X = 3, Y = kitchen``."""
-    found = ((name, resolve(excerpt(value, LONGEST))) for name, value in shown.items())
-    return ", ".join(f"{name} = {term_text(value)}" for name, value in found if value.__class__ is not Var)
+        return ask(mind.mind, formula)
+    except RequestError as error:
+        raise Refused(error.message) from None
 
 
 def _post(mind: OpenMind, written: str) -> str:

@@ -1,14 +1,10 @@
-"""Real time for pages of a run on any clock: a beat, the budget of each page, and a limit for code that no other limit
-stops, such as the unification of terms of exponential size.
-"""
+"""Real time for pages of a run on any clock: a beat, and the budget of each page."""
 
 import asyncio
-import sys
 import threading
 import time
-from collections.abc import Callable, Coroutine, Generator, Iterator
-from contextlib import contextmanager
-from types import FrameType, coroutine
+from collections.abc import Callable, Coroutine, Generator
+from types import coroutine
 from typing import Any, TypeVar
 
 from jacaros.runtime.clock import real_time
@@ -133,37 +129,3 @@ def metered(work: Coroutine[Any, Any, T], spend: Callable[[float], object]) -> G
             turn, given = work.send, (yield waiting)
         except BaseException as error:  # such as a cancellation
             turn, given = work.throw, error
-
-
-class TimeIsUp(BaseException):
-    """Raised inside `time_limit`. Not an `Exception`, so that the code inside does not handle it."""
-
-
-@contextmanager
-def time_limit(seconds: float) -> Iterator[None]:
-    """Raise `TimeIsUp` in the code inside at its first call or return after *seconds*.
-
-    The check is a profile function of the calling thread: it needs no other thread and no signal, and works on every
-    system. A single call into C, such as the concatenation of two strings, is not interrupted.
-    """
-    until, before = real_time() + seconds, sys.getprofile()
-
-    def check(_frame: FrameType, _event: str, _argument: object) -> None:
-        if real_time() > until:
-            sys.setprofile(before)
-            raise TimeIsUp
-
-    sys.setprofile(check)
-    try:
-        yield
-    finally:
-        sys.setprofile(before)
-
-
-def within(seconds: float, compute: Callable[[], str]) -> str | None:
-    """Return the result of *compute*; None if it takes longer than *seconds*."""
-    try:
-        with time_limit(seconds):
-            return compute()
-    except TimeIsUp:
-        return None

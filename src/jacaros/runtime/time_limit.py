@@ -1,0 +1,45 @@
+"""A limit for code that no other limit stops, such as the unification of terms of exponential size."""
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import TypeVar
+
+from jacaros.runtime.clock import real_time
+
+T = TypeVar("T")
+
+
+class TimeIsUp(BaseException):
+    """Raised inside `time_limit`. Not an `Exception`, so that the code inside does not handle it."""
+
+
+@contextmanager
+def time_limit(seconds: float) -> Iterator[None]:
+    """Raise `TimeIsUp` in the code inside at its first call or return after *seconds*.
+
+    The check is a profile function of the calling thread: it needs no other thread and no signal, and works on every
+    system. A single call into C, such as the concatenation of two strings, is not interrupted.
+    """
+    until, before = real_time() + seconds, sys.getprofile()
+
+    def check(_frame: FrameType, _event: str, _argument: object) -> None:
+        if real_time() > until:
+            sys.setprofile(before)
+            raise TimeIsUp
+
+    sys.setprofile(check)
+    try:
+        yield
+    finally:
+        sys.setprofile(before)
+
+
+def within(seconds: float, compute: Callable[[], T]) -> T | None:
+    """Return the result of *compute*; None if it takes longer than *seconds*."""
+    try:
+        with time_limit(seconds):
+            return compute()
+    except TimeIsUp:
+        return None

@@ -1,0 +1,269 @@
+"""Arguments of offers as JSON data, and as terms.
+
+=================  ====================================================================
+kind               data
+=================  ====================================================================
+string, atom       string
+number, integer    number
+boolean            ``true``, ``false``
+list               list of any data
+any                any data: strings are strings, ``{"atom": "kitchen"}`` is an atom, and
+                   ``{"functor": "at", "arguments": [1, 2]}`` a structure
+=================  ====================================================================
+"""
+
+from collections.abc import Mapping, Sequence
+from math import isfinite
+from typing import Any
+
+from jacaros.agents.body.values import UNKEPT, to_term, to_value
+from jacaros.agents.language.diagnostics import AslError
+from jacaros.agents.language.loader import parse_literal
+from jacaros.agents.language.lowering import Variables, lower_value
+from jacaros.agents.language.offers import Offer, Parameter
+from jacaros.agents.terms.operators import ArithmeticFault
+from jacaros.agents.terms.substitution import resolve
+from jacaros.agents.terms.text import text
+from jacaros.agents.terms.values import (
+    FALSE,
+    NUMBERS,
+    TRUE,
+    Functor,
+    String,
+    Term,
+    Var,
+    bare,
+    double,
+    functor,
+    is_list,
+)
+from jacaros.artifacts.env.values import Atom, Out, Structure
+from jacaros.serving.callers import RequestError, check_text
+
+Data = Any
+"""JSON data: None, Booleans, numbers, strings, lists, and dictionaries with strings as keys."""
+DEEPEST = 20
+"""Maximum depth of data."""
+MOST = 10_000
+"""Maximum number of elements of data, and of characters of its strings."""
+
+
+def terms_of(offer: Offer, given: Mapping[str, Data] | Sequence[Data]) -> list[Term]:
+    """Return the arguments of an offer as terms; results are variables.
+
+    Args:
+        offer: what is offered.
+        given: the inputs, by name or in order.
+
+    Raises:
+        RequestError: one is missing, unknown, or of the wrong kind; the text names all.
+    """
+    inputs = offer.inputs
+    if not isinstance(given, Mapping):
+        if len(given) != len(inputs):
+            raise _invalid(offer, [f"expected {len(inputs)} arguments, not {len(given)}"])
+        given = {each.name: value for each, value in zip(inputs, given, strict=True)}
+    names = {each.name for each in inputs}
+    wrong = [f"unknown argument `{name[:80]}`" for name in given if name not in names]
+    terms: list[Term] = []
+    for each in offer.parameters:
+        if each.output:
+            terms.append(Var())
+        elif each.name not in given:
+            wrong.append(f"`{each.name}` is missing")
+        else:
+            try:
+                terms.append(term_of(given[each.name], each))
+            except ValueError as error:
+                wrong.append(f"`{each.name}` {error}")
+    if wrong:
+        raise _invalid(offer, wrong)
+    return terms
+
+
+def _invalid(offer: Offer, wrong: Sequence[str]) -> RequestError:
+    return RequestError("invalid_arguments", f"{'; '.join(wrong)}; expected {offer}")
+
+
+def term_of(value: Data, parameter: Parameter) -> Term:
+    """Return data as a term of the parameter's kind.
+
+    Raises:
+        ValueError: it is of another kind, or too large.
+    """
+    kind = parameter.kind
+    if kind in ("string", "atom") and isinstance(value, str):
+        if len(value) > MOST:
+            raise ValueError(f"has more than {MOST} characters")
+        term: Term = String(value) if kind == "string" else to_term(Atom(value), UNKEPT)
+    elif kind in ("number", "integer") and isinstance(value, int | float) and not isinstance(value, bool):
+        if not isfinite(value):
+            raise ValueError("must be finite")
+        term = to_term(value, UNKEPT)
+    elif kind == "boolean" and isinstance(value, bool):
+        term = TRUE if value else FALSE
+    elif kind == "any" or (kind == "list" and isinstance(value, list)):
+        term = to_term(_plain(value, [0]), UNKEPT)
+    else:
+        raise ValueError(f"must be {_article(parameter)}")
+    check_term(term, parameter)
+    return term
+
+
+def _article(parameter: Parameter) -> str:
+    return f"one of {', '.join(parameter.choices)}" if parameter.choices else f"of the kind {parameter.kind}"
+
+
+def check_term(term: Term, parameter: Parameter) -> None:
+    """Check that a term is of the parameter's kind.
+
+    Raises:
+        ValueError: it is not. The text says what it must be.
+    """
+    kind = term.__class__
+    if parameter.kind in ("number", "integer"):
+        if kind not in NUMBERS:
+            raise ValueError("must be a number")
+        value = double(term)
+        if parameter.kind == "integer" and not value.is_integer():
+            raise ValueError("must be an integer")
+        if (parameter.least is not None and value < parameter.least) or (
+            parameter.most is not None and value > parameter.most
+        ):
+            raise ValueError(f"must be from {parameter.least:g} to {parameter.most:g}")
+    fits = {
+        "string": kind is String,
+        "atom": kind is Functor,
+        "boolean": term is TRUE or term is FALSE,
+        "list": is_list(term),
+    }.get(parameter.kind, True)
+    if not fits or (parameter.choices and to_value(term) not in parameter.choices):
+        raise ValueError(f"must be {_article(parameter)}")
+
+
+def _plain(value: Data, count: list[int], depth: int = 0) -> Any:
+    """Return data as a plain value of the environment."""
+    count[0] += len(value) if isinstance(value, str | list | dict) else 1
+    if depth > DEEPEST or count[0] > MOST:
+        raise ValueError("is too deep or too large")
+    if isinstance(value, list):
+        return [_plain(each, count, depth + 1) for each in value]
+    if isinstance(value, dict):
+        return _compound(value, count, depth)
+    if isinstance(value, float) and not isfinite(value):
+        raise ValueError("must be finite")
+    if value is None:
+        raise ValueError("must not be null")
+    return value
+
+
+def _compound(value: dict[str, Data], count: list[int], depth: int) -> Any:
+    match value:
+        case {"atom": str(name)} if len(value) == 1 and name:
+            return Atom(name)
+        case {"functor": str(name), "arguments": [_, *_] as arguments} if len(value) == 2 and name:
+            return Structure(name, tuple(_plain(each, count, depth + 1) for each in arguments))
+    raise ValueError('has an object that is neither {"atom": …} nor {"functor": …, "arguments": […]}')
+
+
+def literal_of(offer: Offer, arguments: Sequence[Term]) -> Term:
+    """Return the literal of an offer with these arguments."""
+    symbol = functor(offer.name, len(arguments))
+    return (symbol, *arguments) if arguments else symbol
+
+
+def parsed(written: str) -> tuple[str, list[Term], dict[str, Term]]:
+    """Parse a literal. Return its functor, its arguments, and its variables by name.
+
+    Raises:
+        RequestError: it is too long, or not a literal.
+    """
+    names = Variables()
+    try:
+        term = bare(lower_value(parse_literal(check_text(written)), names.__getitem__))
+    except (AslError, ArithmeticFault, RecursionError) as error:
+        first = str(error).splitlines()[0] if str(error) else "nested too deeply"
+        raise RequestError("invalid_arguments", f"not a literal: {first}") from None
+    symbol, *arguments = term if term.__class__ is tuple else (term,)
+    if symbol.negated or symbol.namespace:
+        raise RequestError("not_offered", f"not offered: `{written[:80]}`")
+    return symbol.name, arguments, dict(names.items())
+
+
+def check_terms(offer: Offer, arguments: Sequence[Term], open_inputs: bool = False) -> None:
+    """Check the arguments of a parsed literal.
+
+    Raises:
+        RequestError: one is of the wrong kind. A result must be a variable.
+    """
+    wrong = []
+    for each, term in zip(offer.parameters, arguments, strict=True):
+        if term.__class__ is Var and (each.output or open_inputs):
+            continue
+        try:
+            check_term(term, each)
+        except ValueError as error:
+            wrong.append(f"`{each.name}` {error}")
+    if wrong:
+        raise _invalid(offer, wrong)
+
+
+def data_of(term: Term) -> Data:
+    """Return a term as JSON data, as for the kind ``any``; atoms outside structures are strings."""
+    return _data(to_value(resolve(term)))
+
+
+def _data(value: Any) -> Data:
+    if isinstance(value, bool | int | float) or value is None:
+        return value
+    if isinstance(value, str):
+        return str(value)
+    if isinstance(value, list | tuple):
+        return [_data(each) for each in value]
+    if isinstance(value, Structure):
+        return {"functor": value.functor, "arguments": [_data(each) for each in value.arguments]}
+    if isinstance(value, dict):
+        return {str(key): _data(each) for key, each in value.items()}
+    return None if isinstance(value, Out) else str(value)
+
+
+def named(offer: Offer, arguments: Sequence[Term]) -> dict[str, Data]:
+    """Return the arguments of an offer by name, as data."""
+    return {each.name: data_of(term) for each, term in zip(offer.parameters, arguments, strict=True)}
+
+
+def schema_of(parameters: Sequence[Parameter]) -> dict[str, Any]:
+    """Return the JSON schema of arguments."""
+    return {
+        "type": "object",
+        "properties": {each.name: _schema(each) for each in parameters},
+        "required": [each.name for each in parameters],
+        "additionalProperties": False,
+    }
+
+
+_TYPES = {"atom": "string", "list": "array"}
+
+
+def _schema(parameter: Parameter) -> dict[str, Any]:
+    schema: dict[str, Any] = (
+        {} if parameter.kind == "any" else {"type": _TYPES.get(parameter.kind, parameter.kind)}
+    )
+    if parameter.choices:
+        schema["enum"] = list(parameter.choices)
+    if parameter.least is not None:
+        schema["minimum"] = parameter.least
+    if parameter.most is not None:
+        schema["maximum"] = parameter.most
+    if parameter.doc:
+        schema["description"] = parameter.doc
+    return schema
+
+
+def reasons_of(terms: Sequence[Term]) -> list[str]:
+    """Return reason terms as text, without those that only say that there was a failure."""
+    return [
+        text(each)
+        for each in terms
+        if not (each.__class__ is tuple and each[0].name in ("error_msg", "code_file"))
+    ]

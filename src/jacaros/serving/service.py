@@ -1,0 +1,392 @@
+"""The service of a run to callers outside, the same for each door: sessions, goals, beliefs, questions and events."""
+
+import asyncio
+import secrets
+import time
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from jacaros.agents.language.offers import Offer
+from jacaros.agents.mind.mind import Mind
+from jacaros.agents.terms.text import text
+from jacaros.agents.terms.values import Annotated, String, structure
+from jacaros.look.records import records
+from jacaros.look.why.explanation import Explanation
+from jacaros.look.why.why import explain
+from jacaros.runtime.clock import of_run, start_thread
+from jacaros.runtime.errors import UsageError
+from jacaros.runtime.mas.system import System
+from jacaros.runtime.trace import Cause
+from jacaros.serving.agent import OfferingAgent, OnFacts
+from jacaros.serving.arguments import Data, check_terms, literal_of, parsed, terms_of
+from jacaros.serving.callers import Allowance, Caller, RequestError
+from jacaros.serving.goals import RequestedGoal
+from jacaros.serving.questions import answers_of, variables_of
+
+KEPT = 1_000
+"""Number of goals that are kept after their end, for callers that ask about them later."""
+MOST_ALIVE = 1_000
+"""Maximum number of goals of one session that have not ended."""
+REST = 4.0
+"""Seconds between two explanations per second that the first one took."""
+
+Event = Mapping[str, Any]
+"""What happened, as JSON data; its ``event`` is ``goal``, ``announced``, ``agent_started`` or ``agent_ended``."""
+OnEvent = Callable[[Event], None]
+
+
+class Service:
+    """What the agents of a run offer. All methods belong to the loop of the run.
+
+    Args:
+        system: the run; already started.
+    """
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self.agents: dict[str, OfferingAgent] = {}
+        self.goals: dict[str, RequestedGoal] = {}
+        self.sessions: dict[Session, None] = {}
+        self._ended: deque[str] = deque()
+        self._explaining = asyncio.Lock()
+        self._rested_at = 0.0
+        self._end_watch = system.directory.watch(self._agent_changed)
+        for host in system.directory:
+            self._agent_changed(host.name, True)
+        system.when_ended(lambda _: self.close())
+        system.keep_history()  # so that `why` knows who asked for what
+
+    def open(self, caller: Caller) -> "Session":
+        """Begin a session of a caller."""
+        session = Session(self, caller)
+        self.sessions[session] = None
+        return session
+
+    def close(self) -> None:
+        """End all sessions: the run has ended, or is not served any more."""
+        self._end_watch()
+        for agent in tuple(self.agents.values()):
+            agent.close()
+        self.agents.clear()
+        for session in tuple(self.sessions):
+            session.close()
+
+    def _agent_changed(self, name: str, present: bool) -> None:
+        host = self.system.directory.find(name) if present else None
+        if host is not None and isinstance(host.mind, Mind) and host.mind.program.offers:
+            self.agents[name] = OfferingAgent(host, self._announced)
+        elif name in self.agents and not present:
+            self.agents.pop(name).close()
+        else:
+            return
+        self.tell({"event": f"agent_{'started' if present else 'ended'}", "agent": name}, lambda _: True)
+
+    # ---- events
+
+    def tell(self, event: Event, concerns: Callable[[Caller], bool]) -> None:
+        """Tell all sessions that it concerns of an event."""
+        for session in tuple(self.sessions):
+            if session.listeners and concerns(session.caller):
+                session.hear(event)
+
+    def _announced(self, agent: OfferingAgent, offer: Offer, arguments: Mapping[str, Data]) -> None:
+        event = {"event": "announced", "agent": agent.name, "name": offer.name, "arguments": dict(arguments)}
+        self.tell(event, lambda caller: caller.may(offer))
+
+    def goal_changed(self, goal: RequestedGoal) -> None:
+        """A goal has changed: tell its caller, and operators."""
+        owner = goal.caller
+        if any(each.listeners for each in self.sessions):
+            told = {"event": "goal", **goal.data()}
+            self.tell(told, lambda caller: caller == owner or caller.has(("operator",)))
+        if not goal.over:
+            return
+        self._log(goal)
+        agent = self.agents.get(goal.agent)
+        if agent is not None:
+            agent.ended(goal)
+        self._ended.append(goal.id)
+        if len(self._ended) > KEPT:
+            self.goals.pop(self._ended.popleft(), None)
+
+    def _log(self, goal: RequestedGoal) -> None:
+        why = f": {goal.message}" if goal.message else ""
+        level = "warning" if goal.state == "failed" else "info" if goal.state == "refused" else "debug"
+        self.system.console.log(
+            f"[{goal.agent}] {level}: {goal.state} !{goal.written} for {goal.caller}{why}", level
+        )
+
+    # ---- requests
+
+    def cause(self, caller: Caller, what: str) -> Cause | None:
+        """Return the cause of what a request leads to, for `why`."""
+        tracer = self.system.tracer
+        return None if tracer is None else tracer.link("request", f"{caller} {what}")
+
+    def note(self, caller: Caller, what: str) -> None:
+        """Record what a caller has changed."""
+        self.system.history().record(records.InterventionRecord(f"{caller}: {what}"))
+
+    async def why(self, question: str, at: float | None = None) -> Explanation:
+        """Answer a question about the run so far, in a thread; explanations take at most a fifth of the time.
+
+        Raises:
+            RequestError: the question is not understood.
+        """
+        async with self._explaining:
+            known = self.system.keep_history().all()
+            try:
+                return await start_thread(lambda: self._explain(known, question, at))
+            except UsageError as error:
+                raise RequestError("invalid_arguments", str(error).removeprefix("error: ")) from None
+
+    def _explain(self, known: Any, question: str, at: float | None) -> Explanation:
+        time.sleep(max(0.0, self._rested_at - time.monotonic()))
+        begun = time.monotonic()
+        try:
+            return explain(known, question, at)
+        finally:
+            now = time.monotonic()
+            self._rested_at = now + REST * (now - begun)
+
+
+class Session:
+    """A caller's session. Each request has an effect, or raises `RequestError`.
+
+    Args:
+        service: the service of the run.
+        caller: who asks.
+
+    Attributes:
+        listeners: called with each event that concerns the caller.
+    """
+
+    def __init__(self, service: Service, caller: Caller) -> None:
+        self._service, self.caller = service, caller
+        self.listeners: dict[OnEvent, None] = {}
+        self._own: dict[str, RequestedGoal] = {}
+        self._ends: dict[Callable[[], None], None] = {}
+        self._allowance = Allowance(time.monotonic)
+        self.closed = False
+
+    def close(self) -> None:
+        """End the session. Goals whose offers say so are cancelled, the others continue."""
+        if self.closed:
+            return
+        self.closed = True
+        self.listeners.clear()
+        for end in tuple(self._ends):
+            end()
+        for goal in tuple(self._own.values()):
+            if not goal.over and goal.offer.when_left == "cancel":
+                self._cancel(goal)
+        self._service.sessions.pop(self, None)
+
+    @contextmanager
+    def _request(self) -> Iterator[None]:
+        if self.closed:
+            raise RequestError("ended", "the session, or the run, has ended")
+        self._allowance.spend()
+        with of_run():  # what it starts pauses with the run
+            yield
+
+    # ---- what is offered
+
+    def agents(self) -> list[str]:
+        """Return the agents that offer something to the caller."""
+        with self._request():
+            return [
+                each.name for each in self._service.agents.values() if any(map(self.caller.may, each.offers))
+            ]
+
+    def offers(self, agent: str, what: str = "") -> list[Offer]:
+        """Return what an agent offers to the caller, of one kind or all."""
+        with self._request():
+            found = self._agent(agent).offers
+            return [each for each in found if what in ("", each.what) and self.caller.may(each)]
+
+    def _agent(self, name: str) -> OfferingAgent:
+        found = self._service.agents.get(name)
+        if found is None:
+            raise RequestError("unknown_agent", f"no agent `{name[:80]}` offers anything")
+        return found
+
+    def _offer(self, agent: OfferingAgent, what: str, name: str, count: int | None = None) -> Offer:
+        found = agent.find(what, name, count)
+        permitted = [each for each in found if self.caller.may(each)]
+        if permitted:
+            return permitted[0]
+        size = "" if count is None else f"/{count}"
+        if found:
+            needed = " or ".join(sorted(found[0].roles))
+            raise RequestError("not_permitted", f"the {what} `{name[:80]}{size}` needs the role {needed}")
+        raise RequestError("not_offered", f"{agent.name} offers no {what} `{name[:80]}{size}`")
+
+    # ---- goals
+
+    def achieve(
+        self, agent: str, goal: str, arguments: Mapping[str, Data] | Sequence[Data] = ()
+    ) -> RequestedGoal:
+        """Give an agent a goal that it offers.
+
+        Args:
+            agent: name of the agent.
+            goal: name of the goal.
+            arguments: JSON data, by name or in order.
+        """
+        with self._request():
+            offering = self._agent(agent)
+            offer = self._offer(offering, "goal", goal)
+            return self._give(offering, offer, terms_of(offer, arguments))
+
+    def achieve_text(self, agent: str, written: str) -> RequestedGoal:
+        """Give an agent a goal that it offers, as text in the language."""
+        with self._request():
+            offering = self._agent(agent)
+            name, arguments, _ = parsed(written)
+            offer = self._offer(offering, "goal", name, len(arguments))
+            check_terms(offer, arguments)
+            return self._give(offering, offer, arguments)
+
+    def _give(self, agent: OfferingAgent, offer: Offer, arguments: Sequence[Any]) -> RequestedGoal:
+        self._own = {id: each for id, each in self._own.items() if not each.over}
+        if len(self._own) >= MOST_ALIVE:
+            raise RequestError("too_many_requests", f"{MOST_ALIVE} goals of this session have not ended")
+        service = self._service
+        goal = RequestedGoal(
+            secrets.token_hex(8), agent.host, offer, arguments, self.caller, service.goal_changed
+        )
+        self._own[goal.id] = service.goals[goal.id] = goal
+        agent.take(goal, service.cause(self.caller, f"asks {agent.name} to !{goal.written}"))
+        return goal
+
+    def goal(self, id: str) -> RequestedGoal:
+        """Return a goal of the caller; an operator sees all."""
+        with self._request():
+            return self._goal(id)
+
+    def _goal(self, id: str) -> RequestedGoal:
+        found = self._service.goals.get(id)
+        if found is None or not (found.caller == self.caller or self.caller.has(("operator",))):
+            raise RequestError("unknown_goal", f"no goal `{id[:80]}`")
+        return found
+
+    def goals(self) -> list[RequestedGoal]:
+        """Return the goals of the caller, or all for an operator, the newest last."""
+        with self._request():
+            all_goals = self._service.goals.values()
+            return [g for g in all_goals if g.caller == self.caller or self.caller.has(("operator",))]
+
+    def cancel(self, id: str) -> RequestedGoal:
+        """Cancel a goal: its intention is dropped, and cleaned up."""
+        with self._request():
+            goal = self._goal(id)
+            self._cancel(goal)
+            return goal
+
+    def _cancel(self, goal: RequestedGoal) -> None:
+        if not goal.over:
+            self._service.note(self.caller, f"cancels !{goal.written} of {goal.agent}")
+            with of_run():
+                goal.cancel()
+
+    # ---- beliefs and questions
+
+    def beliefs(self, agent: str, name: str) -> list[dict[str, Data]]:
+        """Return the beliefs that an agent offers under a name."""
+        with self._request():
+            offering = self._agent(agent)
+            return offering.facts(self._offer(offering, "belief", name))
+
+    def watch(self, agent: str, name: str, listener: OnFacts) -> Callable[[], None]:
+        """Call *listener* with the beliefs under a name now, and when they change. Return a function that ends this."""
+        with self._request():
+            offering = self._agent(agent)
+            end = offering.watch(self._offer(offering, "belief", name), listener)
+        self._ends[end] = None
+
+        def stop() -> None:
+            self._ends.pop(end, None)
+            end()
+
+        return stop
+
+    def ask(self, agent: str, written: str) -> list[dict[str, Data]]:
+        """Ask an agent a question that it offers, such as ``route(lab, To, Metres)``; beliefs can be asked for, too.
+
+        Returns:
+            The values of the question's variables in each answer.
+        """
+        with self._request():
+            offering = self._agent(agent)
+            name, arguments, variables = parsed(written)
+            what = "question" if offering.find("question", name, len(arguments)) else "belief"
+            offer = self._offer(offering, what, name, len(arguments))
+            check_terms(offer, arguments, open_inputs=True)
+            return variables_of(offering.mind, offer, arguments, variables)
+
+    def query(
+        self, agent: str, name: str, arguments: Mapping[str, Data] | Sequence[Data] = ()
+    ) -> list[dict[str, Data]]:
+        """Ask an agent a question that it offers, with JSON data. Return the results of each answer by name."""
+        with self._request():
+            offering = self._agent(agent)
+            offer = self._offer(offering, "question", name)
+            answers = answers_of(offering.mind, offer, terms_of(offer, arguments))
+            results = {each.name for each in offer.parameters if each.output}
+            return [{name: value for name, value in each.items() if name in results} for each in answers]
+
+    def tell(
+        self, agent: str, name: str, arguments: Mapping[str, Data] | Sequence[Data] = (), untell: bool = False
+    ) -> None:
+        """Tell an agent a belief that it takes from callers, or take it back."""
+        with self._request():
+            offering = self._agent(agent)
+            offer = self._offer(offering, "tell", name)
+            self._tell(offering, offer, terms_of(offer, arguments), untell)
+
+    def tell_text(self, agent: str, written: str, untell: bool = False) -> None:
+        """Tell an agent a belief that it takes from callers, as text in the language."""
+        with self._request():
+            offering = self._agent(agent)
+            name, arguments, _ = parsed(written)
+            offer = self._offer(offering, "tell", name, len(arguments))
+            check_terms(offer, arguments)
+            self._tell(offering, offer, arguments, untell)
+
+    def _tell(self, agent: OfferingAgent, offer: Offer, arguments: Sequence[Any], untell: bool) -> None:
+        literal = literal_of(offer, arguments)
+        belief = Annotated(literal, (structure("source", String(str(self.caller))),))
+        mind = agent.mind
+        change = mind.untell if untell else mind.tell
+        self._service.note(self.caller, f"{'untells' if untell else 'tells'} {agent.name} {text(literal)}")
+
+        def make(_: object = None) -> None:
+            change(belief)
+
+        if mind.running:
+            mind.do_soon(make)
+        else:
+            make()
+        mind.architecture.ready()
+
+    # ---- events and explanations
+
+    def listen(self, listener: OnEvent) -> Callable[[], None]:
+        """Call *listener* with each event that concerns the caller. Return a function that ends this."""
+        with self._request():
+            self.listeners[listener] = None
+        return lambda: self.listeners.pop(listener, None) and None
+
+    def hear(self, event: Event) -> None:
+        """Pass an event to the listeners."""
+        for listener in tuple(self.listeners):
+            listener(event)
+
+    async def why(self, question: str, at: float | None = None) -> Explanation:
+        """Answer a question about the run, such as ``why did the robot stop``."""
+        with self._request():
+            self.caller.require("observer")
+        return await self._service.why(question, at)
