@@ -28,7 +28,10 @@ KINDS: Final = ("string", "atom", "number", "integer", "boolean", "list", "any")
 """Kinds of arguments."""
 OBSERVER, USER, OPERATOR = "observer", "user", "operator"
 """Roles that always exist. An observer may look; a user may also give goals and tell beliefs; an operator may all."""
-_POLICIES: Final = {"when_busy": ("refuse", "wait", "replace"), "when_left": ("continue", "cancel")}
+_POLICIES: Final[dict[str, tuple[str, ...]]] = {
+    "when_busy": ("refuse", "wait", "replace"),
+    "when_left": ("continue", "cancel"),
+}
 _HINTS: Final = ("destructive", "idempotent")
 _OPTIONS: Final = ("doc", "role", "at_most", *_POLICIES, *_HINTS)
 _EXAMPLE: Final = '{ offer(goal, deliver(parcel(string), room([kitchen, office])), doc("Bring a parcel.")) }'
@@ -152,7 +155,11 @@ def _with_option(offer: Offer, option: nodes.Term) -> Offer:
             return replace(offer, at_most=None)
         case nodes.Literal("when_busy" | "when_left", (nodes.Literal(policy, ()),)):
             if policy in _POLICIES[name]:
-                return replace(offer, **{name: policy})
+                return (
+                    replace(offer, when_busy=policy)
+                    if name == "when_busy"
+                    else replace(offer, when_left=policy)
+                )
         case nodes.Literal("destructive" | "idempotent", ()):
             return replace(offer, hints=offer.hints | {name})
         case _:
