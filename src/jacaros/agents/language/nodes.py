@@ -38,7 +38,8 @@ class _NodeType(type):
             body["__match_args__"] = tuple(parts)
             exec(
                 f"def __init__(self, {', '.join(parameters)}, *, span=None):\n"
-                + "".join(f"    self.{part} = {part}\n" for part in (*parts, "span")),
+                + "".join(f"    self.{part} = {part}\n" for part in (*parts, "span"))
+                + f"def parts(self): return ({''.join(f'self.{part}, ' for part in parts)})\n",
                 body,
             )
             del body["__builtins__"]
@@ -61,7 +62,7 @@ class Node(metaclass=_NodeType):
 
     def parts(self) -> tuple[Any, ...]:
         """The values of the parts, in source order."""
-        return tuple([getattr(self, name) for name in self.__match_args__])
+        return ()
 
     def __eq__(self, other: object) -> bool:
         if other.__class__ is not self.__class__:
@@ -468,14 +469,14 @@ UNDECLARED = Declaration()
 
 def walk(*roots: object) -> Iterator[Node]:
     """Yield the *roots* and all nodes below them, in source order."""
-    stack: list[object] = list(reversed(roots))
+    stack: list[object] = list(roots[::-1])
     while stack:
         part = stack.pop()
-        if isinstance(part, tuple):
-            stack.extend(reversed(part))
-        elif isinstance(part, Node):
+        if isinstance(part, Node):
             yield part
-            stack.extend(reversed(part.parts()))
+            stack += part.parts()[::-1]
+        elif isinstance(part, tuple):
+            stack += part[::-1]
 
 
 def rebuilt(node: Any, change: Callable[[Node], Any]) -> Any:
