@@ -39,10 +39,9 @@ def written_signals(artifact_type: type) -> Usages:
     return _written(artifact_type, ("signal", "signal_to"))
 
 
-def written_usages(artifact_type: type) -> Iterator[tuple[str, str]]:
-    """Yield name and usage of each property and signal where the code of the class defines, updates or sends it."""
-    for each in own_classes(artifact_type):
-        yield from _calls(each, tuple(_DEFINES))
+def usages_in(kind: type) -> Iterator[tuple[str, str]]:
+    """Yield name and usage of each property and signal where the code of one class defines, updates or sends it."""
+    return _calls(kind, tuple(_DEFINES))
 
 
 def _written(artifact_type: type, methods: tuple[str, ...]) -> Usages:

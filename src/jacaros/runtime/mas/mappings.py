@@ -99,10 +99,10 @@ def check_mapping_file(path: Path, beside: Sequence[Path] = ()) -> list[Diagnost
 def _coarse_fields(mapping: MappingFile) -> Iterator[Problem]:
     """Yield fields that are rounded to whole numbers in a unit in which that leaves nearly nothing of the value."""
     from jacaros.robots.mapping.artifact import mapped_type  # here: few runs check
-    from jacaros.runtime.mas.checks.observables import observables_of
+    from jacaros.runtime.mas.checks.observables import Observables
 
     for name, part in mapping.artifacts.items():
-        values = observables_of([mapped_type(mapping, name)]) or {}
+        values = Observables().of([mapped_type(mapping, name)]) or {}
         for topic in part.topics:
             fields = [field for field in topic.fields or () for _ in range(field.count)]
             for field, value in zip(fields, values[topic.name][0].values, strict=False):

@@ -9,7 +9,7 @@ import os
 import re
 from collections import Counter
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -30,6 +30,7 @@ from jacaros.agents.language.nodes import parts_of
 from jacaros.agents.mind.actions.internal_action import STANDARD
 from jacaros.runtime.files import texts as file_texts
 from jacaros.runtime.files.texts import close_matches, did_you_mean, file_bytes
+from jacaros.runtime.mas.checks.observables import Observables, parameter_units
 
 if TYPE_CHECKING:
     from jacaros.artifacts.env.artifact import Artifact
@@ -78,6 +79,7 @@ class Surroundings:
         others: returns other projects that run the same programs; None: not known. Called on demand.
         is_lone: there is only one program, which may be run with mapping files that are not given.
         is_partial: other agents of the project are written in Python, and may add any beliefs.
+        observables: reads the properties and signals of artifact types.
     """
 
     folders: tuple[Path, ...] = ()
@@ -85,6 +87,7 @@ class Surroundings:
     others: Callable[[], Sequence[Whole] | None] = lambda: ()
     is_lone: bool = False
     is_partial: bool = False
+    observables: Observables = field(default_factory=Observables)
 
 
 def check_beliefs(whole: Whole, around: Surroundings) -> list[Diagnostic]:
@@ -108,14 +111,13 @@ class _BeliefCheck:
 
     def __init__(self, wholes: Sequence[Whole], around: Surroundings) -> None:
         from jacaros.runtime.mas.checks.artifacts import lacks_actions
-        from jacaros.runtime.mas.checks.observables import observables_of, parameter_units
 
         self._is_lone = around.is_lone and len(wholes) == 1
         self._is_partial = around.is_partial
         programs = [program for each in wholes for program in each.programs]
         is_known = all(each.types is not None for each in wholes)
         types = list(dict.fromkeys(kind for each in wholes for kind in each.types or ()))
-        observables = observables_of(types) if is_known else None
+        observables = around.observables.of(types) if is_known else None
         flows = [flow_of(program, STANDARD, observables) for program in programs]
         self._flow = Flow(flows, observables or {})
         self.flows = flows[: len(wholes[0].programs)]

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass, field, replace
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -33,10 +33,17 @@ from jacaros.runtime.mas.project.reading import read_project
 if TYPE_CHECKING:
     from jacaros.runtime.mas.checks.artifacts import FindType
     from jacaros.runtime.mas.checks.beliefs import Whole
+    from jacaros.runtime.mas.checks.observables import Observables
 
 PROJECTS: Final = (".mas2j", ".jcm")
 MAPPINGS: Final = (".yaml", ".yml")
 _SKIPPED: Final = frozenset({"__pycache__", "node_modules", "build", "dist"})
+
+
+def _observables() -> "Observables":
+    from jacaros.runtime.mas.checks.observables import Observables  # here: a run loads no artifacts for it
+
+    return Observables()
 
 
 @dataclass
@@ -47,11 +54,17 @@ class Findings:
         diagnostics: sorted by file and location, without duplicates.
         files: all files that have been read: programs, included files and projects.
         unseen: Python files with names that are known only after running them; None if they are run.
+        observables: reads the properties and signals of artifact types, each once in a run.
     """
 
     diagnostics: list[Diagnostic] = field(default_factory=list)
     files: set[Path] = field(default_factory=set)
     unseen: set[Path] | None = field(default_factory=set)
+    observables: "Observables" = field(default_factory=_observables)
+
+    def apart(self) -> "Findings":
+        """Return the empty findings of a further project of the same run."""
+        return Findings(unseen=self.unseen, observables=self.observables)
 
 
 def check_files(paths: Sequence[Path], mappings: Sequence[str] = (), imports: bool = False) -> Findings:
@@ -120,7 +133,7 @@ def _check_each(
     used: set[Path] = set()
     for path in paths:
         if path.resolve() not in findings.files:
-            own = alone[path.resolve()] = Findings(unseen=findings.unseen)
+            own = alone[path.resolve()] = findings.apart()
             used |= check_file(path, own)
     for file, own in alone.items():
         if file not in used:
@@ -224,17 +237,21 @@ class _Checked:
 
     def __init__(self, deployment: Deployment, folders: tuple[Path, ...], findings: Findings) -> None:
         self.deployment, self._folders, self._findings = deployment, folders, findings
+        self._modules = ProjectModules(*folders, unseen=findings.unseen)
         self.programs: list[tuple[AgentSpec, nodes.Program]] = []
 
-    def _modules(self) -> ProjectModules:
-        return ProjectModules(*self._folders, unseen=self._findings.unseen)
+    @cached_property
+    def _find_type(self) -> "FindType":
+        from jacaros.robots.registry import type_finder  # here: see `of_artifacts`
+
+        return type_finder(self._modules)
 
     def check_classes(self) -> None:
         found: dict[str, Diagnostic] = {}  # a class without effect is reported once
         wrong: tuple[Diagnostic, ...] = ()
         try:
             check_classes(
-                self._modules(), self.deployment.agents, lambda each: found.setdefault(each.message, each)
+                self._modules, self.deployment.agents, lambda each: found.setdefault(each.message, each)
             )
         except ProjectError as error:
             wrong = error.diagnostics
@@ -244,7 +261,7 @@ class _Checked:
         """Check the program of an agent with its includes and declarations. Return whether it can run."""
         path, findings = agent.source_path, self._findings
         findings.files.add(path.resolve())
-        code = PythonCode(self._modules())
+        code = PythonCode(self._modules)
         programs = Programs(self._folders, lambda _: None, code)
         sources: list[SourceFile] = []
 
@@ -309,7 +326,6 @@ class _Checked:
     def of_artifacts(self, is_known: bool = True) -> list[Diagnostic]:
         """Return the errors in the artifacts of a project and, if all programs are known, in what agents do with them."""
         # Imported on demand: programs without artifacts do not need them.
-        from jacaros.robots.registry import type_finder
         from jacaros.runtime.mas.checks.artifacts import (
             check_artifacts,
             is_wrong_mapping,
@@ -318,14 +334,16 @@ class _Checked:
         )
         from jacaros.runtime.mas.environment import types_of
 
+        names = {artifact.type_name for each in self.deployment.workspaces for artifact in each.artifacts}
+        wrong = {name for name in names if is_wrong_mapping(name, self._folders)}
         artifacts = [
             artifact
             for workspace in self.deployment.workspaces
             for artifact in workspace.artifacts
-            if not is_wrong_mapping(artifact.type_name, self._folders)
+            if artifact.type_name not in wrong
         ]
         try:
-            find_type = type_finder(self._modules())
+            find_type = self._find_type
             types_of(artifacts, find_type)
         except ModuleUnreadable as error:
             return [Diagnostic("error", str(error), code="wrong-project")]
@@ -344,7 +362,6 @@ class _Checked:
 
     def _of_focus(self, find_type: "FindType", types: Sequence[type]) -> list[Diagnostic]:
         from jacaros.runtime.mas.checks.focusing import check_focus  # here: see `of_artifacts`
-        from jacaros.runtime.mas.checks.observables import observables_of
 
         is_part = not self.deployment.agents and not any(program.goals for _, program in self.programs)
         if (
@@ -354,7 +371,7 @@ class _Checked:
 
         @cache
         def properties(kind: str) -> Set[str] | None:
-            found = observables_of([find_type(kind)])
+            found = self._findings.observables.of([find_type(kind)])
             return None if found is None else found.keys()
 
         # The same program may be that of several agents.
@@ -394,17 +411,18 @@ class _Checked:
         # The working folder may be any, with any words in its files.
         base = self.deployment.base_path.absolute()
         own = tuple(each for each in self._folders if each.absolute().is_relative_to(base))
-        around = Surroundings(own, self._findings.files, self._others, is_lone, is_partial)
+        around = Surroundings(
+            own, self._findings.files, self._others, is_lone, is_partial, self._findings.observables
+        )
         self._findings.diagnostics += check_beliefs(self._whole(), around)
 
     def _whole(self) -> "Whole":
-        from jacaros.robots.registry import type_finder  # here: see `of_artifacts`
-        from jacaros.runtime.mas.checks.artifacts import made_types
+        from jacaros.runtime.mas.checks.artifacts import made_types  # here: see `of_artifacts`
         from jacaros.runtime.mas.checks.beliefs import Whole
 
         trees = [program for _, program in self.programs]
         try:
-            find_type = type_finder(self._modules())
+            find_type = self._find_type
         except ModuleUnreadable:  # reported with the artifacts
             return Whole(trees, None)
         return Whole(trees, made_types(self.deployment, trees, find_type))
@@ -429,7 +447,7 @@ class _Checked:
             if not any(each.source_path in own.values() for each in agents):
                 continue
             folders = (deployment.base_path, *deployment.source_paths)
-            other = _Checked(deployment, folders, Findings(unseen=self._findings.unseen))
+            other = _Checked(deployment, folders, self._findings.apart())
             for agent in agents:
                 if agent.agent_class or agent.is_python or not other.check_program(agent):
                     return None

@@ -9,11 +9,13 @@ Value(kind='number', options=(), unit='percent', whole=True)
 
 import inspect
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import cache
+from itertools import chain
 from typing import TYPE_CHECKING, Final
 
 from jacaros.agents.checks.flow import UNKNOWN, Adder, Value
-from jacaros.artifacts.env.manual import described_usages, own_classes, written_usages
+from jacaros.artifacts.env.manual import described_usages, own_classes, usages_in
 
 if TYPE_CHECKING:
     from jacaros.artifacts.env.artifact import Artifact
@@ -28,20 +30,28 @@ _SEVERAL: Final = ("...", "Values")
 _OPEN_LIST: Final = "..."
 
 
-def observables_of(types: "Iterable[type[Artifact]]") -> dict[str, list[Adder]] | None:
-    """Return the properties and signals of artifacts, by name; None if code computes their names."""
-    found: dict[str, list[Adder]] = {}
-    for artifact_type in types:
-        if any(map(_computes_names, own_classes(artifact_type))):
-            return None
-        for how, section in (("property", "Properties"), ("signal", "Signals")):
-            for usage, text in described_usages(artifact_type, section):
-                found.setdefault(usage.partition("(")[0], []).append(_adder(how, usage, text))
-        for name, usage in written_usages(artifact_type):
-            written, known = _adder("property", usage, ""), found.setdefault(name, [])
-            if all(each.size not in (None, written.size) for each in known):  # the description says more
-                known.append(written)
-    return found
+class Observables:
+    """The properties and signals of artifacts. The source of each class is read once: that is slow."""
+
+    def __init__(self) -> None:
+        self._computes_names = cache(_computes_names)
+        self._described: Callable[[type], list[tuple[str, Adder]]] = cache(_described)
+        self._written = cache(_written)
+
+    def of(self, types: "Iterable[type[Artifact]]") -> dict[str, list[Adder]] | None:
+        """Return the properties and signals of artifacts, by name; None if code computes their names."""
+        found: dict[str, list[Adder]] = {}
+        for artifact_type in types:
+            classes = own_classes(artifact_type)
+            if any(map(self._computes_names, classes)):
+                return None
+            for name, described in self._described(artifact_type):
+                found.setdefault(name, []).append(described)
+            for name, written in chain.from_iterable(map(self._written, classes)):
+                known = found.setdefault(name, [])
+                if all(each.size not in (None, written.size) for each in known):  # the description says more
+                    known.append(written)
+        return found
 
 
 def parameter_units(types: "Iterable[type[Artifact]]") -> dict[tuple[str, int], Sequence[str]]:
@@ -57,6 +67,18 @@ def parameter_units(types: "Iterable[type[Artifact]]") -> dict[tuple[str, int], 
                 one if one == other else "" for one, other in zip(before, units, strict=True)
             ]
     return found
+
+
+def _described(artifact_type: type) -> list[tuple[str, Adder]]:
+    return [
+        (usage.partition("(")[0], _adder(how, usage, text))
+        for how, section in (("property", "Properties"), ("signal", "Signals"))
+        for usage, text in described_usages(artifact_type, section)
+    ]
+
+
+def _written(kind: type) -> list[tuple[str, Adder]]:
+    return [(name, _adder("property", usage, "")) for name, usage in usages_in(kind)]
 
 
 def _adder(how: str, usage: str, text: str) -> Adder:
