@@ -106,7 +106,7 @@ def unmet_goals(program: nodes.Program, adders: Mapping[str, Sequence[Adder]]) -
                 return
             if not _refuses(plan):
                 plans.setdefault(key_of(trigger.literal), []).append(plan)
-    posted = [*program.goals, *(step.goal for step in nodes_in(nodes.Achieve, program.plans))]
+    posted = [*program.goals, *(step.goal for step in program.found.of(nodes.Achieve))]
     for goal in posted:
         if not isinstance(goal, nodes.Literal) or not is_own(goal):
             continue

@@ -9,9 +9,11 @@
 import re
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Final
 
 from jacaros.agents.checks.annotations import wrong_labels, wrong_needs, wrong_supervision
+from jacaros.agents.checks.flow import is_own
 from jacaros.agents.checks.formulas import clauses as clauses_of
 from jacaros.agents.checks.formulas import (
     is_true,
@@ -35,7 +37,6 @@ from jacaros.agents.checks.unreachable import contexts_never_true, never_selecte
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import LEVELS, Diagnostic, SourceFile, Span, problem
 from jacaros.agents.language.lexer import Comment, Token, tokenize
-from jacaros.agents.language.nodes import ByKind
 
 # Comments that switch warnings off.
 #
@@ -125,9 +126,10 @@ def check(program: nodes.Program, known: KnownActions, errors: Sequence[Diagnost
         errors: its syntax errors. Clauses with errors are skipped. So are the checks that need all clauses,
             because a definition that seems to be missing may be in a clause with errors.
     """
+    program = _sound(program, errors)
     warnings = _mistakes(program, known, errors)
-    warnings += doubtful_values(ByKind(*_sound(program, errors)))
-    for clause in _sound(program, errors):
+    warnings += doubtful_values(program.found)
+    for clause in filter(is_own, clauses_of(program)):
         warnings += singletons(clause)
     facts = (belief for belief in program.beliefs if not isinstance(belief, nodes.Rule))
     warnings += [*singletons_of_facts(facts, "belief"), *singletons_of_facts(program.goals, "goal")]
@@ -138,14 +140,12 @@ def check(program: nodes.Program, known: KnownActions, errors: Sequence[Diagnost
 
 def check_for_run(program: nodes.Program, known: KnownActions) -> list[Diagnostic]:
     """Return the warnings of `check` that nearly always point to a mistake; matters of style are left out."""
-    return sorted(dict.fromkeys(_mistakes(program, known, ())), key=place)
+    # A copy: the run keeps the program, and does not need the index of its nodes.
+    return sorted(dict.fromkeys(_mistakes(replace(program), known, ())), key=place)
 
 
 def _mistakes(program: nodes.Program, known: KnownActions, errors: Sequence[Diagnostic]) -> list[Diagnostic]:
-    clauses = _sound(program, errors)
-    facts = [belief for belief in program.beliefs if not isinstance(belief, nodes.Rule)]
-    # One walk for all checks: a program may have many thousands of beliefs.
-    found = ByKind(*facts, *clauses)
+    found = program.found
     warnings = [
         *unknown_actions(program, found, known),
         *wrong_arguments(found, known),
@@ -156,27 +156,34 @@ def _mistakes(program: nodes.Program, known: KnownActions, errors: Sequence[Diag
         *wrong_supervision(program.goals, found),
         *wrong_needs(found),
     ]
-    for clause in clauses:
+    for clause in filter(is_own, clauses_of(program)):
         warnings += vain_comparisons(clause)
     if not errors:
         warnings += goals_without_plan(program, found, known)
         warnings += never_selected(program, found, known)
         warnings += loops_without_wait(program, found, known)
         warnings += missed_events(program, found, known)
-        whole = ByKind(program.beliefs, program.goals, program.plans)
-        warnings += [*unused_handlers(whole, known), *facts_for_goals(program)]
+        warnings += [*unused_handlers(found, known), *facts_for_goals(program)]
     return warnings
 
 
-def _sound(program: nodes.Program, errors: Sequence[Diagnostic]) -> list[nodes.Plan | nodes.Rule]:
-    """Return the plans and rules without errors."""
+def _sound(program: nodes.Program, errors: Sequence[Diagnostic]) -> nodes.Program:
+    """Return the program without the plans and rules that have errors."""
+    if not errors:
+        return program
     wrong: dict[int, list[int]] = {}
     for error in errors:
         if error.span is not None:
             wrong.setdefault(id(error.span.file), []).append(error.span.line)
     for lines in wrong.values():
         lines.sort()
-    return [clause for clause in clauses_of(program) if not _holds_any(clause.span, wrong)]
+    beliefs = [
+        each
+        for each in program.beliefs
+        if not isinstance(each, nodes.Rule) or not _holds_any(each.span, wrong)
+    ]
+    plans = [each for each in program.plans if not _holds_any(each.span, wrong)]
+    return replace(program, beliefs=tuple(beliefs), plans=tuple(plans))
 
 
 def place(diagnostic: Diagnostic) -> tuple[str, int, int]:

@@ -287,9 +287,9 @@ def singletons(clause: Clause) -> Iterator[Diagnostic]:
             in_texts.update(_WORD.findall(node.value))
         elif isinstance(node, nodes.Literal) and not node.arguments:
             atoms.setdefault(node.functor, node)
-    in_head = _in_head(clause)
     what = "plan" if isinstance(clause, nodes.Plan) else "rule"
     once = [name for name, count in occurrences.items() if count == 1 and name not in in_texts]
+    in_head = _in_head(clause) if once else ()
     for number, name in enumerate(once):
         if name in _CONSTANTS:
             yield problem(

@@ -8,7 +8,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 from typing import Final
 
 from jacaros.agents.checks.beliefs import is_misspelt
@@ -36,11 +36,7 @@ class Posts:
 
     def __init__(self, *found: ByKind) -> None:
         triggers = [trigger for each in found for trigger in each.of(nodes.Trigger)]
-        self.handled = {
-            _key(each.literal)
-            for each in triggers
-            if each.operator == "+" and each.kind == "!" and isinstance(each.literal, nodes.Literal)
-        }
+        self.handled = {key for each in found for key in handled_in(each)}
         calls = [call for each in found for call in each.of(nodes.InternalAction)]
         printed = [call.arguments for call in calls if call.name in PRINTING]
         named = [call.arguments[0] for call in calls if call.name in ON_GOALS and call.arguments]
@@ -65,6 +61,15 @@ class Posts:
         """Return whether the name of facts appears nowhere but in these and in plans for the goal of that name."""
         key = _key(facts[0])
         return self._literals[key] == len(facts) and key[0] not in self._words and key not in self._reacted
+
+
+def handled_in(found: ByKind) -> set[Key]:
+    """Return the goals with plans ``+!g``."""
+    return {
+        _key(each.literal)
+        for each in found.of(nodes.Trigger)
+        if each.operator == "+" and each.kind == "!" and isinstance(each.literal, nodes.Literal)
+    }
 
 
 def _key(literal: nodes.Literal) -> Key:
@@ -145,7 +150,10 @@ def is_open(found: ByKind, known: KnownActions) -> bool:
     """Return whether goals or plans come from elsewhere: a plan for any goal, a computed goal, plans added at run time."""
     return (
         any(isinstance(each.literal, nodes.Variable) and each.kind for each in found.of(nodes.Trigger))
-        or any(map(_computes_goal, found.of(nodes.Plan)))
+        or (
+            any(isinstance(step.goal, nodes.Variable) for step in found.of(nodes.Achieve))
+            and any(map(_computes_goal, found.of(nodes.Plan)))
+        )
         or any(known.of(call).brings_in for call in found.of(nodes.InternalAction))
     )
 
@@ -178,7 +186,7 @@ def never_posted(
         known: their internal actions.
         is_project: whether a place is in a file that only this project uses.
     """
-    found = [ByKind(each.beliefs, each.goals, each.plans) for each in programs]
+    found = [each.found for each in programs]
     if any(is_open(each, known) for each in found):
         return
     posts = Posts(*found)
@@ -199,9 +207,9 @@ _OFTEN_MEANT: Final = frozenset(
 """Internal actions without their dots that are not operations of usual artifacts."""
 
 
-def with_mark(action: Key, posts: Posts, known: KnownActions) -> str:
+def with_mark(action: Key, handled: Set[Key], known: KnownActions) -> str:
     """Return the goal or internal action that an unknown action probably is; empty if it is neither."""
-    if action in posts.handled:
+    if action in handled:
         return f"!{action[0]}"
     internal = known.declared.get(f".{action[0]}")
     return f".{action[0]}" if internal is not None and internal.takes(action[1]) else ""
@@ -242,17 +250,17 @@ def missing_marks(program: nodes.Program, known: KnownActions) -> Iterator[Diagn
     They are goals if a plan handles the goal of that name, and nothing posts it or the plan is of a library of JaCaROS; a
     plan for a goal may call the operation of the same name.
     """
-    posts = Posts(ByKind(program.beliefs, program.goals, program.plans))
+    posts = Posts(program.found)
     heads = [each.trigger.literal for each in program.plans]
     own = {_key(head) for head in heads if isinstance(head, nodes.Literal) and _is_own(head)}
-    for plan in program.plans:
+    for plan, found in program.in_plans:
         of = plan.trigger.literal.functor if isinstance(plan.trigger.literal, nodes.Literal) else ""
-        for step in ByKind(plan.body, plan.subplans).of(nodes.ExternalAction):
+        for step in found.of(nodes.ExternalAction):
             action = step.action
             if not isinstance(action, nodes.Literal) or not _is_own(action) or action.functor == of:
                 continue
             key = _key(action)
-            meant = with_mark(key, posts, known)
+            meant = with_mark(key, posts.handled, known)
             is_goal = meant.startswith("!") and (key not in own or not posts.may_post(key))
             if is_goal or meant[1:] in _OFTEN_MEANT:
                 message = f"`{_text(key)}` is an action of the environment: it has no mark of a goal or internal action"

@@ -9,8 +9,9 @@ Terms, logical formulae and body formulae share `Term`, as plans and conditions 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import KW_ONLY, dataclass, field, fields
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Final, TypeVar, dataclass_transform
 
 from jacaros.agents.language.diagnostics import Span
@@ -380,7 +381,7 @@ class RegisteredFunction(Node):
     implementation: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Program:
     """An agent program with its includes resolved, in source order per kind."""
 
@@ -389,6 +390,16 @@ class Program:
     plans: tuple[Plan, ...] = ()
     functions: tuple[RegisteredFunction, ...] = ()
     offers: tuple[Offer, ...] = ()
+
+    @cached_property
+    def found(self) -> ByKind:
+        """All nodes of its beliefs, goals and plans; the checks share this walk."""
+        return ByKind(self.beliefs, self.goals, others=[found for _, found in self.in_plans])
+
+    @cached_property
+    def in_plans(self) -> list[tuple[Plan, ByKind]]:
+        """The plans, each with its nodes."""
+        return [(plan, ByKind(plan)) for plan in self.plans]
 
 
 @dataclass
@@ -579,10 +590,13 @@ def shape(node: object, names: dict[str, int] | None = None) -> object:
 class ByKind:
     """All nodes of pieces of syntax by their kind, collected in one walk."""
 
-    def __init__(self, *roots: object) -> None:
+    def __init__(self, *roots: object, others: Iterable[ByKind] = ()) -> None:
         self._nodes: defaultdict[type, list[Any]] = defaultdict(list)
         for node in walk(*roots):
             self._nodes[type(node)].append(node)
+        for each in others:
+            for kind, found in each._nodes.items():
+                self._nodes[kind] += found
 
     def of(self, *kinds: type[N]) -> list[N]:
         """Return the nodes of these kinds, in order for each kind."""

@@ -8,7 +8,7 @@ operations at run time, and an agent architecture may run actions itself.
 import inspect
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -16,12 +16,11 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from jacaros.agents.body.body import keys
 from jacaros.agents.checks.annotations import needs_of
-from jacaros.agents.checks.formulas import clauses as clauses_of
 from jacaros.agents.checks.goals import KnownActions
-from jacaros.agents.checks.handlers import Posts, with_mark
+from jacaros.agents.checks.handlers import Key, handled_in, with_mark
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic
-from jacaros.agents.language.nodes import UNDECLARED, ByKind, nodes_in, walk
+from jacaros.agents.language.nodes import UNDECLARED, walk
 from jacaros.agents.mind.actions.internal_action import STANDARD
 from jacaros.artifacts.env.arbiter import local_name, read_uses
 from jacaros.artifacts.env.environment import Environment
@@ -80,12 +79,13 @@ def _unknown_operations(
         return
     offered = Offered(types)
     for agent, program in programs:
-        posts = Posts(ByKind(*clauses_of(program)))
-        own = [] if agent.agent_class else [plan for plan in program.plans if not _is_of_library(plan)]
-        yield from unbound_arguments(own, types)
-        for node in () if agent.agent_class else walk(*clauses_of(program)):
-            if isinstance(node, nodes.ExternalAction) and isinstance(node.action, nodes.Literal):
-                yield from offered.check(node.action, posts)
+        if agent.agent_class:
+            continue
+        handled = handled_in(program.found)
+        yield from unbound_arguments([plan for plan in program.plans if not _is_of_library(plan)], types)
+        for step in program.found.of(nodes.ExternalAction):
+            if isinstance(step.action, nodes.Literal):
+                yield from offered.check(step.action, handled)
 
 
 _GOAL: Final = re.compile(r"no plan for `!(\w+)/(\d+)`")
@@ -109,12 +109,10 @@ def operations_as_goals(types: "Sequence[type[Artifact]]") -> Callable[[Diagnost
 
 def _is_open(program: nodes.Program) -> bool:
     """Return whether a program adds others at run time, or a test answers its actions."""
-    for node in walk(*clauses_of(program), *program.goals):
-        if isinstance(node, nodes.InternalAction) and STANDARD.get(node.name, UNDECLARED).brings_in:
-            return True
-        if isinstance(node, nodes.Literal) and node.functor == _FAKE:
-            return True
-    return False
+    found = program.found
+    return any(
+        STANDARD.get(call.name, UNDECLARED).brings_in for call in found.of(nodes.InternalAction)
+    ) or any(literal.functor == _FAKE for literal in found.of(nodes.Literal))
 
 
 def _offers_more(artifact_type: "type[Artifact]") -> bool:
@@ -150,12 +148,12 @@ class Offered:
         own = action.span is not None and not action.span.file.name.startswith("$")
         return own and not self.has(action.functor, len(action.arguments))
 
-    def check(self, action: nodes.Literal, posts: Posts) -> Iterator[Diagnostic]:
-        """Return a warning if no artifact offers *action*. *posts* has the goals of its program."""
+    def check(self, action: nodes.Literal, handled: Set[Key]) -> Iterator[Diagnostic]:
+        """Return a warning if no artifact offers *action*. *handled* are the goals that its program has plans for."""
         name, arity = action.functor, len(action.arguments)
         if self.lacks(action):
             message = f"unknown operation `{name}/{arity}`: no artifact of the project has it"
-            meant = with_mark((name, arity), posts, KnownActions(STANDARD))
+            meant = with_mark((name, arity), handled, KnownActions(STANDARD))
             help = did_you_mean([meant]) if meant else self._help(name, arity)
             yield Diagnostic("warning", message, action.span, help, "unknown-operation")
 
@@ -178,7 +176,7 @@ def lacks_actions(programs: Sequence[nodes.Program], types: "Sequence[type[Artif
     if types is None or any(map(_is_open, programs)) or any(map(_offers_more, types)):
         return True
     offered = Offered(types)
-    actions = (node.action for each in programs for node in nodes_in(nodes.ExternalAction, each.plans))
+    actions = (step.action for each in programs for step in each.found.of(nodes.ExternalAction))
     return any(offered.lacks(each) for each in actions if isinstance(each, nodes.Literal))
 
 
@@ -217,7 +215,7 @@ def _unknown_resources(
     similar to that of an artifact's resource.
     """
     known = sorted(set(_resources(types)))
-    found = [each for _, program in programs for each in needs_of(ByKind(*clauses_of(program)))]
+    found = [each for _, program in programs for each in needs_of(program.found)]
     counts = Counter(name for name, _ in found)
     for name, item in found if known else ():
         close = close_matches(name, known)
@@ -341,10 +339,9 @@ def _key(literal: nodes.Literal | nodes.Variable) -> tuple[str, int]:
 
 def _uses(program: nodes.Program) -> Iterator[tuple[nodes.Literal, nodes.Plan | None]]:
     """Return all literals of a program except triggers of plans, with their plans."""
-    for plan in program.plans:
-        for node in walk(plan.context, plan.body, plan.subplans):
-            if isinstance(node, nodes.Literal):
-                yield node, plan
+    for plan, found in program.in_plans:
+        head = set(map(id, walk(plan.label, plan.trigger)))
+        yield from ((node, plan) for node in found.of(nodes.Literal) if id(node) not in head)
     for node in walk(program.goals, program.beliefs):
         if isinstance(node, nodes.Literal):
             yield node, None

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import jacaros.agents.mind.actions.standard  # noqa: F401 - fills the table of internal actions
 from jacaros.agents.checks.checker import Suppressions, check, place, wanted
+from jacaros.agents.checks.flow import is_own
 from jacaros.agents.checks.goals import KnownActions
 from jacaros.agents.checks.handlers import missing_marks, never_posted
 from jacaros.agents.language import nodes
@@ -515,7 +516,8 @@ def _of_size(program: nodes.Program, code: PythonCode) -> Iterator[Diagnostic]:
     from jacaros.agents.mind.mind import new_engine  # here: only a complete program is compiled
     from jacaros.agents.mind.state.plan_library import ProgramPlans
 
-    plans = ProgramPlans(program.plans, new_engine(code.actions)).plans
+    own = tuple(filter(is_own, program.plans))
+    plans = ProgramPlans(own, new_engine(code.actions)).plans
     for plan, fault in too_large(plans, code.actions):
         help = "write several plans, or rules for parts of it"
         yield Diagnostic("warning", f"{fault}, so it runs slower", plan.node.span, help, "plan-too-large")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 from jacaros.agents.checks.flow import Reader, flow_of, is_own
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic
-from jacaros.agents.language.nodes import ByKind, walk
+from jacaros.agents.language.nodes import ByKind
 from jacaros.agents.mind.actions.internal_action import STANDARD
 from jacaros.runtime.mas.checks.artifacts import Offered, type_of
 from jacaros.runtime.mas.deployment import AgentSpec, Deployment
@@ -75,7 +75,7 @@ def _not_joined(
     deployment: Deployment, agent: AgentSpec, program: nodes.Program, joined: Set[str], offers: "Offers"
 ) -> Iterator[Diagnostic]:
     """Warn of operations of workspaces that only other agents join; a program that may join others is skipped."""
-    actions = [action for plan in program.plans for action in _actions(plan)]
+    actions = _actions(program.found)
     if not _REACHING.isdisjoint(each.functor for each in actions) or agent.agent_class:
         return
     everywhere = Offered(())
@@ -98,11 +98,9 @@ def _not_joined(
 
 
 def _words(program: nodes.Program) -> Iterator[str]:
-    for node in walk(program.beliefs, program.goals, program.plans):
-        if isinstance(node, nodes.String):
-            yield from _WORD.findall(node.value)
-        elif isinstance(node, nodes.Literal):
-            yield node.functor
+    for text in program.found.of(nodes.String):
+        yield from _WORD.findall(text.value)
+    yield from (literal.functor for literal in program.found.of(nodes.Literal))
 
 
 # ---- properties
@@ -122,7 +120,7 @@ class _Focus:
         for artifact in self._declared.values():
             self._by_name.setdefault(artifact.name, set()).add(artifact.type_name)
         for _, program in programs:
-            for name, kind, _ in _made(program.plans):
+            for name, kind, _ in _made(program.found):
                 if kind:
                     self._by_name.setdefault(name, set()).add(kind)
 
@@ -183,7 +181,7 @@ class _Focus:
             for (space, name), artifact in self._declared.items()
             if any(each.artifact == name and each.workspace in (None, space) for each in agent.focus)
         }
-        goals = [step.goal for step in ByKind(program.plans).of(nodes.Achieve)]
+        goals = [step.goal for step in program.found.of(nodes.Achieve)]
         for goal in goals:
             if isinstance(goal, nodes.Literal) and goal.functor == _USING and is_own(goal):
                 kind = type_of(goal.arguments[1]) if len(goal.arguments) > 1 else None
@@ -191,27 +189,27 @@ class _Focus:
                     return None
                 found.add(kind)
         posted = {goal.functor for goal in goals if isinstance(goal, nodes.Literal)} - {_USING}
-        for plan in program.plans:
+        for plan, in_plan in program.in_plans:
             literal = plan.trigger.literal
-            focuses = [each for each in _actions(plan) if each.functor in _FOCUSING and each.arguments]
+            focuses = [each for each in _actions(in_plan) if each.functor in _FOCUSING and each.arguments]
             if focuses and not is_own(focuses[0]):
                 if isinstance(literal, nodes.Literal) and literal.functor in posted:
                     return None
                 continue
             for each in focuses:
-                kinds = self._meant(each.arguments[0], plan)
+                kinds = self._meant(each.arguments[0], in_plan)
                 if kinds is None:
                     return None
                 found |= kinds
         return found
 
-    def _meant(self, term: nodes.Term, plan: nodes.Plan) -> set[str] | None:
+    def _meant(self, term: nodes.Term, in_plan: ByKind) -> set[str] | None:
         """Return the types that an argument of ``focus`` may refer to."""
         if isinstance(term, nodes.Variable):
-            made = {kind for _, kind, identifier in _made((plan,)) if identifier == term}
+            made = {kind for _, kind, identifier in _made(in_plan) if identifier == term}
             looked_up = [
                 each.arguments[0]
-                for each in _actions(plan)
+                for each in _actions(in_plan)
                 if each.functor == "lookupArtifact" and each.arguments[1:] == (term,)
             ]
             names = [type_of(each) for each in looked_up]
@@ -222,19 +220,17 @@ class _Focus:
         return None if name is None else self._by_name.get(name.rpartition(".")[2])
 
 
-def _actions(plan: nodes.Plan) -> Iterator[nodes.Literal]:
-    for step in ByKind(plan.body, plan.subplans).of(nodes.ExternalAction):
-        if isinstance(step.action, nodes.Literal):
-            yield step.action
+def _actions(found: ByKind) -> list[nodes.Literal]:
+    steps = found.of(nodes.ExternalAction)
+    return [step.action for step in steps if isinstance(step.action, nodes.Literal)]
 
 
-def _made(plans: Iterable[nodes.Plan]) -> Iterator[tuple[str, str, nodes.Term | None]]:
+def _made(found: ByKind) -> Iterator[tuple[str, str, nodes.Term | None]]:
     """Yield name, type and identifier of the artifacts that plans make."""
-    for plan in plans:
-        for action in _actions(plan):
-            if action.functor == "makeArtifact" and len(action.arguments) >= 2:
-                name, kind = map(type_of, action.arguments[:2])
-                yield name or "", kind or "", action.arguments[3] if len(action.arguments) > 3 else None
+    for action in _actions(found):
+        if action.functor == "makeArtifact" and len(action.arguments) >= 2:
+            name, kind = map(type_of, action.arguments[:2])
+            yield name or "", kind or "", action.arguments[3] if len(action.arguments) > 3 else None
 
 
 def _first(readers: Iterable[Reader]) -> Iterator[Reader]:
