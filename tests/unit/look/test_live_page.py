@@ -38,6 +38,20 @@ async def test_a_robot_is_dragged(page) -> None:
 
 
 @on_the_page
+async def test_the_story_is_told_when_its_tab_is_opened_and_on_request(page) -> None:
+    page.mas.agent("bob").post_goal("unknown")
+    await page.wait_for("document.querySelector('#log').innerText.includes('!unknown')")
+    assert await page.texts("#story li") == []
+    await page.click("#tab-story")
+    await page.wait_for("document.querySelectorAll('#story li.error').length === 1")
+    assert "the run continues" in (await page.texts("#story li"))[-1]
+    page.mas.agent("bob").post_goal("another")
+    await page.wait_for("document.querySelector('#log').innerText.includes('!another')")
+    await page.click("#story .plain")
+    await page.wait_for("document.querySelectorAll('#story li.error').length === 2")
+
+
+@on_the_page
 async def test_doors_obstacles_and_batteries_change_by_keyboard(page) -> None:
     await page.evaluate("document.querySelector('[data-tool=\"door gate\"]').focus()")
     await page.press("Enter")

@@ -157,6 +157,13 @@ def test_a_reason_is_as_short_as_it_can_be(why: str, shortest: str) -> None:
     assert reason(why) == shortest
 
 
+def test_a_run_that_continues_has_no_end_yet() -> None:
+    lines = story_of(
+        [(1.0, "goal", {"agent": "a", "goal": "!go", "state": "pursued", "id": 1})], is_over=False
+    )
+    assert (lines[-1].level, lines[-1].text) == ("note", "the run continues; pursued: `!go`")
+
+
 def test_the_command_prints_the_story_as_text_or_json_until_a_moment(tmp_path: Path) -> None:
     recorder = Recorder(tmp_path / "run.jsonl")
     recorder.world({"name": "lab", "robots": []})

@@ -13,11 +13,12 @@ _OF_END = frozenset({"program", "source", "intention", "ended"})
 """Records that say why a run ended."""
 
 
-def story_of(happened: Iterable[Record]) -> list[StoryLine]:
+def story_of(happened: Iterable[Record], is_over: bool = True) -> list[StoryLine]:
     """Return the lines of a run, the oldest first. The last one says how it ended, and what was still wanted.
 
     Args:
         happened: (t, event, data), as described in docs/reference/recordings.md, the oldest first.
+        is_over: whether no records follow; otherwise, the last line says that the run continues.
     """
     teller, needed, end = Teller(), [], 0.0
     for record in happened:
@@ -28,7 +29,9 @@ def story_of(happened: Iterable[Record]) -> list[StoryLine]:
             needed.append(record)
     past = Past.of(needed)
     past.end = end
-    kept = sorted(((each.weight, each) for each in teller.tales(past)), key=lambda each: each[0])[:MOST]
+    kept = sorted(((each.weight, each) for each in teller.tales(past, is_over)), key=lambda each: each[0])[
+        :MOST
+    ]
     # At the same moment, what happened to a robot comes before what its agent made of it.
     kept.sort(key=lambda each: (each[1].rank == Rank.END, each[1].t, not each[1].robot))
     return [each.line() for _, each in kept]

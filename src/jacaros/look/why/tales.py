@@ -169,7 +169,7 @@ class Teller:
         elif kind is not None:
             self._tell(event, t, kind.text.format_map(data), robot=str(data.get("robot") or ""))
 
-    def tales(self, past: Past) -> list[Tale]:
+    def tales(self, past: Past, is_over: bool = True) -> list[Tale]:
         """Return all tales; *past* has the programs, and how the run ended."""
         for key, failure in self._failures.items():
             self._fail(key, failure)
@@ -183,7 +183,7 @@ class Teller:
         for each in pursuits[:MOST_PURSUITS]:
             each.rank = Rank.PURSUIT
         setup = [each for each in pursuits[1:] if each.last - each.t < LASTING]
-        return [*(each for each in self._tales.values() if each not in setup), self._end(past)]
+        return [*(each for each in self._tales.values() if each not in setup), self._end(past, is_over)]
 
     def _tell(self, kind: str, t: float, text: str, who: str = "", robot: str = "", about: str = "") -> Tale:
         """Add to the tale of a kind and a text, or *about* in its place."""
@@ -342,12 +342,13 @@ class Teller:
         dropped = [(agent, goal) for t, agent, goal in self._dropped if past.end - t <= AT_ONCE]
         return dropped + [(key[0], next(iter(each.stack.values()))) for key, each in self._pursuits.items()]
 
-    def _end(self, past: Past) -> Tale:
+    def _end(self, past: Past, is_over: bool) -> Tale:
         code, step = past.exit_code, ending_step(past)
         because = f", because {step.agent} ran {step.text}" if step is not None else ""
         parts = [f"the run ended with exit code {code}{because}"]
+        cut_off = code is None and is_over
         if code is None:
-            parts = ["the recording stops before the end of the run"]
+            parts = ["the recording stops before the end of the run" if is_over else "the run continues"]
         elif code >= _SIGNALS:
             parts = [f"the run was stopped by signal {code - _SIGNALS}"]
         lost = {name for key, tale in self._tales.items() if key[0] == "lost" for name in tale.who}
@@ -361,9 +362,10 @@ class Teller:
         if ended:
             agents = len({agent for agent, _ in ended})
             by = f" by {agents} agents" if agents > 1 else ""
-            parts.append(f"still wanted{by}: {_names(sorted({f'`{shown(goal)}`' for _, goal in ended}))}")
+            what = "still wanted" if is_over else "pursued"
+            parts.append(f"{what}{by}: {_names(sorted({f'`{shown(goal)}`' for _, goal in ended}))}")
         level: Level = "error" if lost or 0 < (code or 0) < _SIGNALS else "note"
-        return Tale(Rank.END, past.end, "; ".join(parts), "warning" if code is None else level)
+        return Tale(Rank.END, past.end, "; ".join(parts), "warning" if cut_off else level)
 
 
 class _Kind(NamedTuple):

@@ -3,8 +3,9 @@
 import asyncio
 import contextlib
 import time
-from collections.abc import AsyncIterator, Callable, Iterable
+from collections.abc import AsyncIterator, Callable, Iterable, Sequence
 from contextlib import asynccontextmanager
+from typing import TypeVar
 
 from jacaros.look.page.live.access import Access
 from jacaros.look.page.live.commands import (
@@ -20,17 +21,21 @@ from jacaros.look.page.live.server import LiveServer, bound_socket
 from jacaros.look.page.watch import Watch, watch_of
 from jacaros.look.records import records
 from jacaros.look.records.records import FiniteNumber, Record
+from jacaros.look.why.story import story_of
+from jacaros.look.why.tales import StoryLine
 from jacaros.look.why.why import explain
 from jacaros.robots.world import World
 from jacaros.runtime.clock import outside_run, start_thread
 from jacaros.runtime.mas.embedding.mas import Mas
 from jacaros.runtime.mas.system import System
 
+T = TypeVar("T")
+
 FIRST_VISIT = 5.0
 """Seconds that the end of a run waits for an opened browser that has not shown the run yet."""
 
 REST = 4.0
-"""Seconds between two explanations per second that the first one took."""
+"""Seconds between two answers per second that the first one took."""
 SIGNALS = 128
 """Exit codes from here on mean that a signal ended the run, which must then not wait."""
 
@@ -76,7 +81,7 @@ class RunView:
         """
         system = self._system
         self.commands.add({**mind_commands(system), **artifact_commands(system)}, changes=True)
-        self.commands.add({"why": self._why})
+        self.commands.add({"why": self._why, "story": self._story})
         # The world may be created later, when an agent first needs a robot.
         system.ros.watch_world(lambda world: self._let_change(world, watch.look))
         self._debug()
@@ -124,17 +129,25 @@ class RunView:
                 await self._server.close()
 
     async def _why(self, question: Text, at: FiniteNumber | None = None) -> str:
-        """Answer a question about the run so far, as lines; in a thread, because many records take seconds."""
+        """Answer a question about the run so far, as lines."""
+        return await self._from_records(lambda records: explain(records, question, at).text())
+
+    async def _story(self) -> Sequence[StoryLine]:
+        """Tell the run so far."""
+        return await self._from_records(lambda records: story_of(records, is_over=False))
+
+    async def _from_records(self, answer: Callable[[Iterable[Record]], T]) -> T:
+        """Answer from the records of the run so far, in a thread, because many of them take seconds."""
         async with self._explaining:
             records = self._system.keep_history().all()
-            return await start_thread(lambda: self._explain(records, question, at))
+            return await start_thread(lambda: self._after_a_rest(lambda: answer(records)))
 
-    def _explain(self, records: Iterable[Record], question: str, at: float | None) -> str:
-        """Answer in a thread, which first rests: explanations take at most a fifth of the time, however many are wanted."""
+    def _after_a_rest(self, answer: Callable[[], T]) -> T:
+        """Answer in a thread, which first rests: answers take at most a fifth of the time, however many are wanted."""
         time.sleep(max(0.0, self._rested_at - time.monotonic()))
         begun = time.monotonic()
         try:
-            return explain(records, question, at).text()
+            return answer()
         finally:
             now = time.monotonic()
             self._rested_at = now + REST * (now - begun)

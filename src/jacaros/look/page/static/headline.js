@@ -35,7 +35,7 @@ export class Headline {
       return [{ level: "error", text: `connection to the run lost: last message ${silent} s ago; the page shows what was the case then` }];
     }
     if (!this.run.over || t < this.run.end - AT_END) return [];
-    const { code } = this.run, told = this.story.lines.at(-1)?.text ?? `the run ended with exit code ${code}`;
+    const { code } = this.run, told = this.story.isWhole ? this.story.lines.at(-1)?.text : `the run ended with exit code ${code}`;
     return [{ level: code && code < SIGNALS ? "error" : "quiet", text: told, t: this.run.end }];
   }
 

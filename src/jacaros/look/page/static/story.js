@@ -3,10 +3,11 @@ import { moveByArrows, refill, keyed } from "./refill.js";
 
 const SIGNS = { error: "✖", warning: "⚠", note: "" };
 
-/** The story of a recorded run: lines with `t`, `text`, `level`, `count`, `until`, `agent` and `robot`. */
+/** The story of a run: lines with `t`, `text`, `level`, `count`, `until`, `agent` and `robot`. */
 export class Story {
   constructor() {
     this.lines = [];
+    this.isWhole = false;  // the run has ended
     this.listener = () => {};
   }
 
@@ -15,24 +16,40 @@ export class Story {
 
   add(t, event, lines) {
     if (event !== "story") return;
-    this.lines = lines;
+    Object.assign(this, { lines, isWhole: true });
     queueMicrotask(() => this.listener());
   }
 }
 
-/** The story, each line with the way to its moment. */
+/** The story, each line with the way to its moment. A live page asks for it when its tab is opened. */
 export class StoryView {
   constructor(root, context, story) {
     Object.assign(this, { root, context, story });
     this.list = element("ol", "story");
     this.list.setAttribute("aria-label", "What happened in this run. Each line goes to its moment.");
-    root.append(this.list);
+    this.again = button("plain", () => this.ask(), "Update");
+    root.append(this.list, this.again);
     moveByArrows(this.list, ".moment");
   }
 
-  get empty() { return this.story.lines.length === 0; }
+  get empty() { return this.story.lines.length === 0 && !this.canAsk; }
+
+  get canAsk() { return this.context.commands.can.has("story"); }
+
+  /** The tab was opened. */
+  opened() { if (this.canAsk) this.ask(); }
+
+  async ask() {
+    const { actions, commands, time } = this.context;
+    const lines = await actions.run(this.again, () => commands.send("story"));
+    if (!lines) return;
+    this.story.lines = lines;
+    this.now = undefined;
+    time.notify();
+  }
 
   show(t) {
+    this.again.hidden = !this.canAsk;
     const now = this.story.lines.filter((line) => line.t <= t + 0.05).length - 1;
     if (now === this.now) return;
     this.now = now;

@@ -58,6 +58,10 @@ export class Tabs {
       this.arranged = tabs;
       this.reveal();
     }
+    if (open !== this.shown) {
+      this.shown = open;
+      open?.view.opened?.();
+    }
     return open;
   }
 
