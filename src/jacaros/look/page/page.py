@@ -16,6 +16,7 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
+from jacaros.look.page.thinning import span_of, thinned
 from jacaros.look.records.line_format import encoded
 from jacaros.look.records.recording import Recording
 from jacaros.look.records.records import VERSION, EventLine, RecordingLine, TextLine, WorldLine
@@ -91,21 +92,25 @@ def packed(recording: Recording) -> str:
 
 
 class StoryRecord(RecordingLine, tag="story"):
-    """The story of a run, which pages show first. Recordings do not have it."""
+    """The story of a run, which pages show first, and the seconds of which they have only extremes, see `thinned`.
+
+    Recordings do not have it.
+    """
 
     lines: Sequence[StoryLine]
+    span: float = 0.0
 
 
 def story_record(recording: Recording) -> StoryRecord:
     """Return the story of a recording as a record for a page."""
-    return StoryRecord(story_of(recording.events))
+    return StoryRecord(story_of(recording.events), span_of(recording.events))
 
 
 def lines_of(recording: Recording) -> Iterator[RecordingLine]:
-    """Yield the records of a recording except frames, in time order, as in its file."""
+    """Yield the records of a recording except frames, in time order, as in its file; of a long one, what a page needs."""
     yield WorldLine(version=VERSION, world=recording.world)
     texts = (TextLine(*text) for text in recording.texts)
-    events = (EventLine(*event) for event in recording.events)
+    events = (EventLine(*event) for event in thinned(recording.events))
     yield from sorted((*texts, *events), key=attrgetter("t"))
 
 

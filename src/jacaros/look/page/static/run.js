@@ -64,7 +64,7 @@ function content(record) {
     case "world": return ["world", record.world ?? {}];
     case "frame": return ["frame", record.robots ?? []];
     case "text": return ["text", { agent: record.agent, text: record.text }];
-    case "story": return ["story", record.lines ?? []];
+    case "story": return ["story", { lines: record.lines ?? [], span: record.span }];
     case "event": return [record.event, record.data ?? {}];
     default: return [];
   }

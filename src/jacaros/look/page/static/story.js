@@ -1,5 +1,6 @@
-import { button, clock, element } from "./elements.js";
+import { button, clock, element, setText } from "./elements.js";
 import { moveByArrows, refill, keyed } from "./refill.js";
+import { duration } from "./section.js";
 
 const SIGNS = { error: "✖", warning: "⚠", note: "" };
 
@@ -8,15 +9,16 @@ export class Story {
   constructor() {
     this.lines = [];
     this.isWhole = false;  // the run has ended
+    this.span = 0;  // seconds of which the page of a long recording has the extremes of numbers
     this.listener = () => {};
   }
 
   /** Call `listener` as soon as the story is there, after the records. */
   onTold(listener) { this.listener = listener; }
 
-  add(t, event, lines) {
+  add(t, event, data) {
     if (event !== "story") return;
-    Object.assign(this, { lines, isWhole: true });
+    Object.assign(this, { ...data, isWhole: true });
     queueMicrotask(() => this.listener());
   }
 }
@@ -28,7 +30,8 @@ export class StoryView {
     this.list = element("ol", "story");
     this.list.setAttribute("aria-label", "What happened in this run. Each line goes to its moment.");
     this.again = button("plain", () => this.ask(), "Update");
-    root.append(this.list, this.again);
+    this.note = element("p", "about");
+    root.append(this.list, this.again, this.note);
     moveByArrows(this.list, ".moment");
   }
 
@@ -53,6 +56,8 @@ export class StoryView {
     const now = this.story.lines.filter((line) => line.t <= t + 0.05).length - 1;
     if (now === this.now) return;
     this.now = now;
+    const { span } = this.story;
+    setText(this.note, span ? `The recording is long: of values that led to nothing, this page has the lowest and highest of each ${duration(span)}.` : "");
     refill(this.list, this.story.lines.map((line, n) => this.line(line, n)));
   }
 
