@@ -1,6 +1,7 @@
 """``jacaros plot`` and ``jacaros export``: files, panels and wrong names."""
 
 import json
+import sys
 from pathlib import Path
 
 import pytest
@@ -78,6 +79,22 @@ def test_an_export_overwrites_nothing_else(run: Path, outcome: Outcome, output: 
     assert errors.startswith(f"error: {error}")
     assert Path("package.json").read_text(encoding="utf-8") == '{"name": "mine"}'
     assert not list(Path().glob("*.mcap"))
+
+
+def test_an_export_without_the_library_names_the_extra(
+    run: Path, outcome: Outcome, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("foxglove", "mcap_file"):
+        monkeypatch.delitem(sys.modules, f"jacaros.look.out.{name}", raising=False)
+    monkeypatch.setitem(sys.modules, "mcap.writer", None)
+    code, _, errors = outcome("export", "run.jsonl", "-o", "run.mcap")
+    assert (code, errors.splitlines()) == (
+        2,
+        [
+            "error: mcap, which writes MCAP files, is not installed",
+            "  = help: pip install 'jacaros[foxglove]'",
+        ],
+    )
 
 
 def test_values_that_programs_compare_are_drawn_once_with_their_plans(run: Path, told: Told) -> None:
