@@ -11,7 +11,7 @@ export class Failures {
     this.newest = new Map();  // by intention: the failure that may still be handled
   }
 
-  /** Take a record of a goal; returns its failure: t, agent, intention, goal (the outermost), why, handled. */
+  /** Take a record of a goal; returns the failure that it adds to, or handles: t, agent, intention, goal (the outermost), why, handled. */
   add(t, { agent, goal, state, id, intention, why }) {
     const key = `${agent} ${intention ?? `goal ${id}`}`, known = this.newest.get(key);
     if (state === "failed") {
@@ -23,9 +23,10 @@ export class Failures {
       return failure;
     }
     // A goal with a plan for its failure is pursued again.
-    if (known?.ids.has(id) && (state === "pursued" || state === "recovered")) known.handled = true;
     this.newest.delete(key);
-    return null;
+    if (!known?.ids.has(id) || (state !== "pursued" && state !== "recovered")) return null;
+    known.handled = true;
+    return known;
   }
 
   of(agent) {

@@ -1,3 +1,4 @@
+import { Failures } from "./failures.js";
 import { Bars, KIND } from "./lanes_bars.js";
 
 const DEEPEST = 12;  // goals of a stack that have bars
@@ -61,7 +62,7 @@ class Rows {
   constructor(name) { Object.assign(this, { name, rows: [] }); }
 
   /** Whether one of its bars has a length. */
-  get lasts() { return this.rows.some(({ total, isOpen }) => total > 0 || isOpen); }
+  get lasts() { return this.rows.some(({ lasts }) => lasts); }
 
   free() {
     const found = this.rows.find((each) => !each.isOpen) ?? new Bars();
@@ -73,7 +74,7 @@ class Rows {
 /** An agent: each intention in one of `slots`, a row of its states and one for each level of its stack of goals. */
 class AgentLane {
   constructor(name) {
-    Object.assign(this, { name, slots: [], open: new Map(), actions: new Rows("actions"), refusals: new Bars(true), refused: new Map(), triggers: new Map() });
+    Object.assign(this, { name, slots: [], open: new Map(), actions: new Rows("actions"), refusals: new Bars(true), refused: new Map(), triggers: new Map(), failures: new Failures() });
   }
 
   deliberation(t, { id, trigger, intention, parent, chosen, options }) {
@@ -88,17 +89,17 @@ class AgentLane {
     }
   }
 
-  goal(t, { id, goal, state, intention, why }) {
-    const key = intention ?? `goal ${id}`, mine = this.open.get(key);
+  goal(t, data) {
+    const { id, goal, state, intention, why } = data, key = intention ?? `goal ${id}`, mine = this.open.get(key), failure = this.failures.add(t, data);
+    if (failure?.handled) failure.marks?.recast(KIND.handled);
     if (state === "pursued") this.pursue(t, key, { id, goal });
     else if (!mine) return;
-    else if (OUTCOMES.has(state)) this.finish(t, key, id, state, why);
+    else if (OUTCOMES.has(state)) this.finish(t, key, id, state, why, failure);
     else mine.set(t, state === "suspended" ? KIND.suspended : KIND.runs, "");
   }
 
   pursue(t, key, { id, goal }) {
-    const { latest } = this, isDecided = latest?.trigger === `+${goal}`, again = this.failed?.t === t && this.failed.ids.has(id);
-    if (again) this.handle();
+    const { latest } = this, isDecided = latest?.trigger === `+${goal}`;
     const mine = this.open.get(key) ?? this.begin(t, key, ((isDecided && latest.event) || goal).replace(/^\+!/, "!"));
     mine.push(t, { agent: this.name, intention: key, id, goal, cause: isDecided ? latest.id : undefined });
   }
@@ -111,30 +112,16 @@ class AgentLane {
     return made;
   }
 
-  finish(t, key, id, state, why) {
+  finish(t, key, id, state, why, failure) {
     const mine = this.open.get(key), isLowest = mine.goals[0]?.id === id, goal = mine.pop(t, id, state, why);
-    // Behaviours of trees fail without a reason as a matter of course.
-    if (state === "failed" && why && goal) this.fail(t, goal, mine.failures);
+    if (failure && goal) this.fail(t, goal, mine.failures, failure);
     if (mine.root.isEvent ? !mine.goals.length && !mine.isSeen : isLowest) this.over(t, key, state, why);
   }
 
   /** Mark a failure. Goals that fail together have one mark, that of the lowest. */
-  fail(t, goal, marks) {
-    const { failed } = this;
-    if (failed?.t === t && failed.what.intention === goal.intention) {
-      failed.ids.add(goal.id);
-      Object.assign(failed.what, goal, { lost: true });
-      return;
-    }
-    this.failed = { t, marks, ids: new Set([goal.id]), what: { ...goal, lost: true } };
-    marks.mark(t, KIND.failed, this.failed.what);
-  }
-
-  /** The last failure has a plan: it is not lost. */
-  handle() {
-    this.failed.what.lost = false;
-    this.failed.marks.recast(KIND.handled);
-    this.failed = undefined;
+  fail(t, { cause }, marks, failure) {
+    if (!failure.marks) marks.mark(t, KIND.failed, failure);
+    Object.assign(failure, { cause, marks: failure.marks ?? marks });
   }
 
   over(t, key, state, why) {

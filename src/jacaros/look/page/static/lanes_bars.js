@@ -1,35 +1,33 @@
 import { indexAt } from "./track.js";
 
-const FAN = 8;  // bars, or nodes, below one node
 const LIMIT = 250000;  // bars of one row that are kept: a live page may be open for days
 
-/** The kinds of bars. The number of one is its place among the `sums` of a node. */
+/** The kinds of bars. The number of one is its place among sums. */
 export const KIND = { runs: 0, acts: 1, waits: 2, suspended: 3, done: 4, handled: 5, failed: 6, refused: 7 };
-const KINDS = 8, LEVELS = 6;
+const KINDS = 8;
 
 /**
- * A row of bars in the order of time.
+ * A row of bars in the order of time. The last bar may be open: its end is infinite.
  *
- * Nodes above them hold how many seconds each kind took (of bars without a length: how many there are), so a range of any
- * length is drawn from a few thousand of them. The last bar may be open: its end is infinite, and no node counts it.
+ * `sums` has for each bar what each kind took before it, in seconds (of bars without a length: how many there were), so bars of
+ * any number are merged in one step. Open bars do not count.
  */
 export class Bars {
-  /** @param {boolean} isCounted the bars have no length: a node says how many there are, not how long they took. */
+  /** @param {boolean} isCounted the bars have no length: sums say how many there are, not how long they took. */
   constructor(isCounted = false, limit = LIMIT) {
-    Object.assign(this, { isCounted, limit, total: 0 });
-    this.clear();
+    Object.assign(this, { isCounted, limit, starts: [], ends: [], kinds: [], whats: [], sums: new Array(KINDS).fill(0) });
   }
-
-  clear() { Object.assign(this, { starts: [], ends: [], kinds: [], whats: [], levels: Array.from({ length: LEVELS }, () => []) }); }
 
   get count() { return this.starts.length; }
 
-  get isOpen() { return this.count > 0 && this.ends.at(-1) === Infinity; }
+  get isOpen() { return this.ends.at(-1) === Infinity; }
+
+  /** Whether one of its bars counts. */
+  get lasts() { return this.isOpen || this.sums.slice(-KINDS).some((sum) => sum > 0); }
 
   /** Begin a bar at `t`; it ends one that is open. */
   begin(t, kind, what) {
     this.end(t);
-    if (this.count > 1.25 * this.limit) this.drop(this.count - this.limit);
     this.push(Math.max(t, this.ends.at(-1) ?? 0), Infinity, kind, what);
   }
 
@@ -39,53 +37,45 @@ export class Bars {
     const last = this.count - 1;
     this.ends[last] = Math.max(t, this.starts[last]);
     this.kinds[last] = kind;
-    this.sum(last, this.weight(last));
+    this.add(this.isCounted ? 1 : this.ends[last] - this.starts[last]);
   }
 
   /** Add a bar without a length. */
   mark(t, kind, what) {
-    if (this.count > 1.25 * this.limit) this.drop(this.count - this.limit);
     this.push(t, t, kind, what);
-    this.sum(this.count - 1, 1);
+    this.add(1);
   }
 
-  weight(index) { return this.isCounted ? 1 : this.ends[index] - this.starts[index]; }
-
-  /** Make the newest bar one of another kind. */
+  /** Make the newest bar, which is a mark, one of another kind. */
   recast(kind) {
-    this.sum(this.count - 1, -1);
+    this.add(-1);
     this.kinds[this.count - 1] = kind;
-    this.sum(this.count - 1, 1);
+    this.add(1);
   }
 
   push(start, end, kind, what) {
-    this.starts.push(start);
-    this.ends.push(end);
-    this.kinds.push(kind);
-    this.whats.push(what);
+    const { starts, ends, kinds, whats, sums, limit } = this, excess = this.count > 1.25 * limit ? this.count - limit : 0;
+    for (const list of [starts, ends, kinds, whats]) list.splice(0, excess);
+    sums.splice(0, excess * KINDS);
+    starts.push(start);
+    ends.push(end);
+    kinds.push(kind);
+    whats.push(what);
+    sums.push(...sums.slice(-KINDS));
   }
 
-  sum(index, amount) {
-    let node = index;
-    this.total += amount;
-    for (const sums of this.levels) {
-      node = Math.floor(node / FAN);
-      while (sums.length < (node + 1) * KINDS) sums.push(0);
-      sums[node * KINDS + this.kinds[index]] += amount;
-    }
-  }
-
-  drop(count) {
-    const { starts, ends, kinds, whats } = this;
-    this.clear();
-    for (let i = count; i < starts.length; i++) {
-      this.push(starts[i], ends[i], kinds[i], whats[i]);
-      if (ends[i] !== Infinity) this.sum(this.count - 1, this.weight(this.count - 1));
-    }
-  }
+  /** Count the newest bar. */
+  add(amount) { this.sums[this.count * KINDS + this.kinds.at(-1)] += amount; }
 
   /** Call `take(first, end, sums)` for the bars of a range, in order; those that fit into `grain` seconds come together. */
-  each(from, to, grain, take) { new Walk(this, firstAbove(this.ends, from - grain), firstAbove(this.starts, to), grain, take).run(); }
+  each(from, to, grain, take) {
+    const { starts, ends, sums } = this, stop = firstAbove(starts, to), own = new Float64Array(KINDS);
+    for (let first = firstAbove(ends, from - grain), end; first < stop; first = end) {
+      end = Math.max(first + 1, Math.min(stop, firstAbove(ends, starts[first] + grain)));
+      for (let kind = 0; kind < KINDS; kind++) own[kind] = sums[end * KINDS + kind] - sums[first * KINDS + kind];
+      take(first, end, own);
+    }
+  }
 
   /** Index of the bar at `t`, or of one that is at most `near` seconds away; -1 for none. */
   at(t, near) {
@@ -93,40 +83,6 @@ export class Bars {
     const distance = (i) => (i < this.count ? Math.max(0, starts[i] - t, t - ends[i]) : Infinity);
     const best = distance(index + 1) < distance(index) ? index + 1 : index;
     return distance(best) <= near ? best : -1;
-  }
-}
-
-/** One way through the nodes of a row: indices from `first` to `last`, not below nodes that are shorter than `grain`. */
-class Walk {
-  constructor(bars, first, last, grain, take) {
-    Object.assign(this, { bars, first, last, grain, take, begun: -1, ended: -1, sums: new Float64Array(KINDS) });
-  }
-
-  run() {
-    const size = FAN ** LEVELS;
-    for (let node = Math.floor(this.first / size); node * size < this.last; node++) this.visit(node, LEVELS);
-    this.emit();
-  }
-
-  visit(node, level) {
-    const { bars, first, last } = this, size = FAN ** level, start = node * size, end = Math.min(start + size, bars.count);
-    if (end <= first || start >= last) return;
-    if (level > 0 && bars.ends[end - 1] - bars.starts[start] >= this.grain) {
-      for (let child = 0; child < FAN; child++) this.visit(node * FAN + child, level - 1);
-      return;
-    }
-    if (this.begun >= 0 && bars.ends[end - 1] - bars.starts[this.begun] >= this.grain) this.emit();
-    if (this.begun < 0) this.begun = start;
-    this.ended = end;
-    if (level === 0) this.sums[bars.kinds[start]] += bars.weight(start);
-    else for (let kind = 0; kind < KINDS; kind++) this.sums[kind] += bars.levels[level - 1][node * KINDS + kind];
-  }
-
-  emit() {
-    if (this.begun < 0) return;
-    this.take(this.begun, this.ended, this.sums);
-    this.begun = -1;
-    this.sums.fill(0);
   }
 }
 

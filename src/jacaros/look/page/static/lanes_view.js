@@ -10,7 +10,6 @@ import { indexAt } from "./track.js";
 const NEAR = 5;  // pixels around a bar, or a mark, in which it is pointed at
 const THIN = 3;  // pixels around an arrow
 const FOLDED = 2;  // intentions of a folded agent that have a high row
-const MANY = 6;  // agents from which on they are ordered, and can be filtered
 const LEGEND = [["runs", "runs"], ["acts", "acts"], ["waits", "waits"], ["suspended", "suspended"], ["lost", "lost goal"], ["handled", "failure with a plan"]];
 const HEIGHTS = { states: 16, more: 4, goals: 12, actions: 10, refusals: 8, resources: 12, operations: 12 };
 
@@ -25,21 +24,16 @@ export class LanesView {
     this.tip = element("p", "lanes-tip");
     this.tip.hidden = true;
     this.cursor = element("button", "cursor", "Bars: the arrow keys move from one to the next");
-    this.filter = element("input", "entry");
-    Object.assign(this.filter, { placeholder: "Filter agents", ariaLabel: "Filter agents" });
     root.append(this.cursor, this.canvas, this.space);
     const panel = root.closest(".when");
     panel.append(this.tip);
-    panel.querySelector(".tools").prepend(this.filter);
     panel.querySelector("h2").after(element("ul", "lanes-legend", ...LEGEND.map(([sort, text]) => element("li", sort, text))));
     this.listen();
   }
 
   listen() {
     new TimePointer(this.root, this.axis, this);
-    const again = () => this.context.time.notify();
-    this.root.addEventListener("scroll", again);
-    this.filter.addEventListener("input", again);
+    this.root.addEventListener("scroll", () => this.context.time.notify());
     this.cursor.type = "button";
     this.cursor.addEventListener("keydown", (event) => this.press(event));
     this.cursor.addEventListener("click", () => { if (this.current) this.choose(this.current, this.current.row.bars.starts[this.current.index]); });
@@ -51,9 +45,8 @@ export class LanesView {
 
   show() {
     const { axis, root, lanes, context } = this, { clientWidth: width, clientHeight: height, scrollTop: top } = root, { selection, run } = context;
-    this.filter.hidden = lanes.agents.size < MANY;
     const stamp = [axis.from, axis.to, axis.width, width, height, top, lanes.version, this.messages.all.length, JSON.stringify(selection.current), isDark(),
-      this.filter.value, [...this.open], this.current?.row.key, this.current?.index].join(" ");
+      [...this.open], this.current?.row.key, this.current?.index].join(" ");
     if (stamp === this.stamp || height < 2) return;
     this.stamp = stamp;
     this.layOut();
@@ -68,7 +61,7 @@ export class LanesView {
   layOut() {
     const { lanes } = this;
     Object.assign(this, { rows: [], height: 4 });
-    for (const lane of this.agents()) this.addAgent(lane);
+    for (const lane of lanes.agents.values()) this.addAgent(lane);
     for (const { name, bars } of lanes.resources.values()) this.add("resources", bars, { label: `owner: ${name.replace(/^\//, "")}`, isFirst: true });
     for (const { name, rows, lasts } of lanes.artifacts.values()) {
       if (lasts || this.context.selection.has({ artifact: name })) rows.forEach((bars, n) => this.add("operations", bars, { label: n ? "" : shortName(name), isFirst: !n }));
@@ -103,23 +96,6 @@ export class LanesView {
       if (plan && !plan.file?.startsWith("$") && count > most[0]) most = [count, plan];
     }
     return most[1] ? `${most[0]}× ${planName(most[1])} refused` : "";
-  }
-
-  /** The lanes of agents: of the selected one, then of those with something in view, then of the others. */
-  agents() {
-    const { axis, lanes, context } = this, key = this.orderKey(), filter = this.filter.value.trim().toLowerCase();
-    if (key === this.order?.key) return this.order.lanes;
-    const isSeen = ({ slots }) => slots.some(({ states }) => states.at((axis.from + axis.to) / 2, axis.span / 2) >= 0);
-    const rank = (lane) => (lanes.agents.size < MANY ? 0 : context.selection.has({ agent: lane.name }) ? -1 : isSeen(lane) ? 0 : 1);
-    const found = [...lanes.agents.values()].filter(({ name }) => name.toLowerCase().includes(filter)).map((lane) => [rank(lane), lane]);
-    this.order = { key, lanes: found.sort((a, b) => a[0] - b[0]).map(([, lane]) => lane) };
-    return this.order.lanes;
-  }
-
-  /** The same as long as the order of agents need not change: never while time moves. */
-  orderKey() {
-    const { axis, lanes, filter, context: { time, selection } } = this;
-    return `${lanes.agents.size} ${selection.current.agent} ${filter.value} ${time.live || time.playing ? "" : `${axis.from} ${axis.to}`}`;
   }
 
   /** Messages in view between agents that have lanes, with the heights of these. */
@@ -189,7 +165,6 @@ export class LanesView {
     const { bars } = row, what = bars.whats[index].root ?? bars.whats[index], { agent, intention, artifact, cause, id } = what;
     this.context.time.go(Math.max(bars.starts[index], Math.min(bars.ends[index], t)));
     showWhy(this.context, { agent, ...(intention === undefined ? {} : { intention }), ...(artifact ? { artifact, cause: id } : { cause }) });
-    if (this.order) this.order.key = this.orderKey();  // what you clicked stays where it is
   }
 
   /** Outline a bar, and tell about it. */

@@ -40,10 +40,10 @@ function span(from, to) { return to === Infinity ? `since ${clock(from)}` : `${c
 
 function failures(bars, first, end) {
   if (end - first === 1) {
-    const { agent, goal, why, lost } = bars.whats[first];
-    return [`${agent}: ${goal} failed${lost ? "" : "; a plan handled it"}`, clock(bars.starts[first]), ...why.split("\n")];
+    const { agent, goal, why, handled } = bars.whats[first];
+    return [`${agent}: ${goal} failed${handled ? "; a plan handled it" : ""}`, clock(bars.starts[first]), ...why.split("\n")];
   }
-  const lost = bars.whats.slice(first, end).filter((each) => each.lost).length;
+  const lost = bars.whats.slice(first, end).filter((each) => !each.handled).length;
   return [`${end - first} failures, ${lost} of them lost goals`, span(bars.starts[first], bars.starts[end - 1])];
 }
 
