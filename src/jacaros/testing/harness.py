@@ -40,6 +40,7 @@ from jacaros.runtime.files.texts import file_text
 from jacaros.runtime.mas.agents.host import Ended, without_exit
 from jacaros.runtime.mas.agents.programs import Programs
 from jacaros.runtime.mas.agents.python_code import PythonCode
+from jacaros.runtime.mas.embedding.given import read_given
 from jacaros.runtime.mas.embedding.running_agent import OpenMind, PursuedGoal, literal
 from jacaros.testing.assertions import Complete, failed, matches
 
@@ -319,7 +320,7 @@ _LONGEST = 3600.0
 class AgentHarness(OpenMind):
     """An agent under test.
 
-    Literals, goals and formulae are passed as text, in the syntax of the language.
+    Literals, goals and formulae are text of the language or data, see `jacaros.runtime.mas.embedding.given`.
 
     Args:
         program: program text, or the path of a file.
@@ -390,9 +391,10 @@ class AgentHarness(OpenMind):
         )
         self.mind.receive(message)
 
-    def achieve(self, goal: str) -> PursuedGoal:
+    def achieve(self, goal: object, /, *arguments: object, **values: object) -> PursuedGoal:
         """Give the agent a goal in a new intention; the result reports the outcome."""
-        return PursuedGoal(goal, WatchedGoal(self.mind, literal(goal)))
+        taken = read_given(goal, arguments, values)
+        return PursuedGoal(taken.text, WatchedGoal(self.mind, taken.term))
 
     # ---- reasoning
 
@@ -555,7 +557,7 @@ class AgentHarness(OpenMind):
 
     def __str__(self) -> str:
         """Return the visible state of the agent as text."""
-        parts = {
+        parts: dict[str, Sequence[str]] = {
             "beliefs": self.beliefs,
             "goals": [f"!{goal}" for goal in self.goals],
             "acts": [f"{act}{' (pending)' if act.pending else ''}" for act in self.acts],

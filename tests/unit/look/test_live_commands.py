@@ -79,10 +79,10 @@ async def test_a_belief_is_added_and_removed(page) -> None:
 async def test_a_goal_is_posted_and_dropped(page) -> None:
     bob = page.mas.agent("bob")
     await page.done("goal", agent="bob", op="post", text="go(dock)")
-    await bob.until("at(dock)", 5)
+    await bob.until("at(dock)", timeout=5)
     await page.event("goal", agent="bob", goal="!go(dock)", state="achieved")
     await page.done("goal", agent="bob", op="post", text="!never")
-    await bob.until(".intend(never)", 5)
+    await bob.until(".intend(never)", timeout=5)
     await page.done("goal", agent="bob", op="drop", text="never")
     assert not bob.believes(".intend(never)")
     assert "does not pursue" in await page.refused("goal", agent="bob", op="drop", text="never")
@@ -91,7 +91,7 @@ async def test_a_goal_is_posted_and_dropped(page) -> None:
 @played(commanding)
 async def test_a_message_is_sent(page) -> None:
     await page.done("message", agent="bob", performative="tell", text="told(news)")
-    await page.mas.agent("bob").until("heard(news, you)", 5)
+    await page.mas.agent("bob").until("heard(news, you)", timeout=5)
     assert "unknown agent" in await page.refused("message", agent="eve", performative="tell", text="told(x)")
     assert "must be one of" in await page.refused(
         "message", agent="bob", performative="shout", text="told(x)"
@@ -194,7 +194,7 @@ async def test_an_endless_question_is_refused(page, line: str) -> None:
     why = await page.refused("console", agent="bob", text=line)
     assert "the question takes longer than 0.1 s" in why or "the search takes more than 10000" in why
     await page.done("goal", agent="bob", op="post", text="go(hall)")
-    await page.mas.agent("bob").until("at(hall)", 5)
+    await page.mas.agent("bob").until("at(hall)", timeout=5)
 
 
 @played(commanding)
@@ -370,7 +370,7 @@ async def test_a_breakpoint_stops_the_run(page) -> None:
     assert not page.mas.agent("bob").believes("at(_)")
     assert await page.done("breakpoint", op="remove", at=at) == []
     await page.done("continue")
-    await page.mas.agent("bob").until("at(dock)", 5)
+    await page.mas.agent("bob").until("at(dock)", timeout=5)
     assert "not set" in await page.refused("breakpoint", op="remove", at=at)
     assert "got `str` - at `$.at`" in await page.refused("breakpoint", op="add", at="here")
     assert "invalid breakpoint" in await page.refused("breakpoint", op="add", at={"line": 3})
@@ -392,7 +392,7 @@ async def test_a_changed_program_is_reloaded(tmp_path: Path) -> None:
         program.write_text("+!say <- +said(new).")
         assert "bob" in str(await page.done("reload"))
         await page.done("goal", agent="bob", op="post", text="say")
-        await page.mas.agent("bob").until("said(new)", 5)
+        await page.mas.agent("bob").until("said(new)", timeout=5)
         program.write_text("+!say <- (")
         assert await page.refused("reload")
         assert page.mas.agent("bob").believes("said(new)")
@@ -411,7 +411,7 @@ async def test_the_run_continues_while_a_question_about_it_is_answered(page, mon
     answer = asyncio.create_task(page.done("why", question="waiting"))
     await asyncio.to_thread(asked.wait, 20)
     await page.done("goal", agent="bob", op="post", text="go(hall)")
-    await page.mas.agent("bob").until("at(hall)", 5)
+    await page.mas.agent("bob").until("at(hall)", timeout=5)
     assert not answer.done()
     may_answer.set()
     assert "no agent has a goal" in str(await answer)
@@ -420,7 +420,7 @@ async def test_the_run_continues_while_a_question_about_it_is_answered(page, mon
 @played(commanding)
 async def test_a_question_is_answered(page) -> None:
     await page.done("goal", agent="bob", op="post", text="go(dock)")
-    await page.mas.agent("bob").until("at(dock)", 5)
+    await page.mas.agent("bob").until("at(dock)", timeout=5)
     assert "!go(dock) was achieved" in str(await page.done("why", question="!go(dock)"))
     answer = str(await page.done("why", question="did it achieve go(dock)?"))
     assert answer.startswith("yes: `!go(dock)` of bob was achieved")

@@ -109,7 +109,8 @@ def test_goals_report_their_outcome() -> None:
 
 def test_beliefs_can_be_given_and_taken() -> None:
     agent = AgentHarness("+p(X)[source(S)] <- .print(plus(X, S)). -p(X) <- .print(minus(X)).")
-    agent.add_belief("p(1)", "p(2)[source(bob)]")
+    agent.add_belief("p(1)")
+    agent.add_belief("p(2)[source(bob)]")
     agent.run()
     agent.remove_belief("p(1)")
     agent.run()

@@ -8,8 +8,8 @@ from types import MappingProxyType
 
 import pytest
 from hypothesis import given
-from hypothesis import strategies as st
 
+from drawn_values import VALUES, same
 from jacaros.agents.body.values import References, atom_of, to_term, to_value
 from jacaros.agents.language.loader import parse_literal
 from jacaros.agents.language.lowering import Variables, lower_value
@@ -18,36 +18,6 @@ from jacaros.agents.terms.substitution import equal
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.values import Reference, Term, atom, functor, list_items, make_list
 from jacaros.artifacts.env.values import Atom, Structure, plain
-
-NAMES = st.text(min_size=1).filter(lambda name: name not in ("true", "false"))
-NUMBERS = st.integers(-(2**53), 2**53) | st.floats(allow_nan=False).map(
-    lambda x: int(x) if x.is_integer() else x
-)
-SCALARS = NUMBERS | st.booleans() | st.text() | st.builds(Atom, NAMES)
-
-
-def _compound(inner: st.SearchStrategy[object]) -> st.SearchStrategy[object]:
-    return (
-        st.lists(inner)
-        | st.builds(Structure, NAMES, st.lists(inner, min_size=1).map(tuple))
-        | st.dictionaries(st.text() | NUMBERS, inner)
-    )
-
-
-VALUES = st.recursive(SCALARS, _compound, max_leaves=10)
-
-
-def same(left: object, right: object) -> bool:
-    """Equal, and of the same classes all the way down."""
-    if type(left) is not type(right):
-        return False
-    if isinstance(left, list):
-        return len(left) == len(right) and all(map(same, left, right))
-    if isinstance(left, dict):
-        return left.keys() == right.keys() and all(same(item, right[key]) for key, item in left.items())
-    if isinstance(left, Structure):
-        return left.functor == right.functor and same(list(left.arguments), list(right.arguments))
-    return left == right
 
 
 def term(value: object) -> Term:

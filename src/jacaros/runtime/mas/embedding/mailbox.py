@@ -4,15 +4,14 @@ import asyncio
 from collections.abc import Sequence
 from typing import Any
 
-from jacaros.agents.body.values import UNKEPT, to_term
-from jacaros.agents.language.loader import parse_term
-from jacaros.agents.language.lowering import lower_value
+from jacaros.agents.language.loader import parse_formula, parse_term
 from jacaros.agents.mind.state.act import SpeechAct
 from jacaros.agents.python.agent import Message
 from jacaros.agents.terms.substitution import rename
 from jacaros.agents.terms.unifier import Trail, undo, unify
 from jacaros.agents.terms.values import Term, bare
-from jacaros.runtime.mas.embedding.running_agent import question, values_of
+from jacaros.runtime.mas.embedding.given import Given, by_position, read_given
+from jacaros.runtime.mas.embedding.running_agent import values_of
 from jacaros.runtime.mas.embedding.waits import RunEnded, RunWaits
 from jacaros.runtime.mas.messaging import Arrivals, Correspondent, ListNames, Send
 
@@ -65,47 +64,76 @@ class Mailbox(Arrivals[Message]):
             raise StopAsyncIteration from None
 
     def send(
-        self, receiver: str, performative: str, content: object, reply_to: Message | None = None
+        self,
+        receiver: str,
+        performative: str,
+        content: object,
+        /,
+        *arguments: object,
+        reply_to: Message | None = None,
+        **values: object,
     ) -> None:
         """Send a message to an agent.
+
+        ::
+
+            me.send("bob", "achieve", "fetch(ball)")
+            me.send("bob", "achieve", "fetch", "Ann, O'Hara")
+            me.send("bob", "tell", "Content", Content=message.content)  # whatever it is
 
         Args:
             receiver: name of the agent.
             performative: ``tell``, ``achieve``, ``askOne``, ``signal`` …
-            content: a term in the syntax of the language, as text; or a plain value (see `jacaros.artifacts.env.values`).
+            content: a term of the language as text; a `Literal`; or a plain value (see `jacaros.artifacts.env.values`).
+            arguments: plain values, if the content is a name.
             reply_to: the message that this one answers.
+            values: plain values of variables in the text.
 
         Raises:
             UnknownAgent: no participant has this name.
             AslError: the text is not a term.
+            UsageError: arguments follow a text that is not a name, or a value has no variable.
         """
-        answered = reply_to.id if reply_to is not None else None
-        self._sender.say(receiver, performative, term_of(content), answered)
+        arguments, reply_to = by_position(content, arguments, "reply_to", reply_to)
+        said = read_given(content, arguments, values, parse_term).term
+        self._sender.say(receiver, performative, said, reply_to.id if reply_to is not None else None)
 
-    async def ask(self, receiver: str, literal: str, timeout: float | None = None) -> dict[str, Any] | None:
+    async def ask(
+        self,
+        receiver: str,
+        literal: object,
+        /,
+        *arguments: object,
+        timeout: float | None = None,
+        **values: object,
+    ) -> dict[str, Any] | None:
         """Ask an agent for one answer (``askOne``), and wait for it.
 
         Args:
             receiver: name of the agent.
-            literal: the question, such as ``battery(Level)``.
+            literal: the question, such as ``battery(Level)``; or a literal as data.
+            arguments: plain values, if *literal* is a name.
             timeout: time limit in seconds of the run's clock.
+            values: plain values of variables in the text.
 
         Returns:
-            Plain values by variable name; None if the agent does not know.
+            Plain values by name of the variables that are not given a value; None if the agent does not know.
 
         Raises:
             UnknownAgent: no participant has this name.
+            UsageError: arguments follow a text that is not a name, or a value has no variable.
             TimeoutError: no answer arrived in time.
             RunEnded: the run ended first.
         """
-        asked, names = question(literal)
+        arguments, timeout = by_position(literal, arguments, "timeout", timeout)
+        asked = read_given(literal, arguments, values, parse_formula)
 
         def wait(answer: "asyncio.Future[SpeechAct]") -> Any:
-            missing = f"agent {receiver} did not answer {literal}"
+            missing = f"agent {receiver} did not answer {asked.text}"
             return self._waits.wait(answer, lambda: missing, timeout, receiver)
 
-        message = await self._sender.question(receiver, "askOne", rename(asked), wait)
-        return None if message.performative == "untell" else _bindings(asked, names, message.content)
+        message = await self._sender.question(receiver, "askOne", rename(asked.term), wait)
+        return None if message.performative == "untell" else _bindings(asked, message.content)
 
     def receive(self, message: SpeechAct) -> None:
         """Receive a message. Called by the run."""
@@ -128,21 +156,10 @@ class PythonMailboxes(dict[str, Mailbox]):
         return tuple(self)
 
 
-def term_of(content: object) -> Term:
-    """Return the content of a message as a term.
-
-    Raises:
-        AslError: the text is not a term.
-    """
-    if type(content) is str:
-        return lower_value(parse_term(content))
-    return to_term(content, UNKEPT)
-
-
-def _bindings(asked: Term, names: Any, told: Term) -> dict[str, Any] | None:
+def _bindings(asked: Given, told: Term) -> dict[str, Any] | None:
     """Return the values of a question's variables in one answer; None if that is another literal."""
     trail = Trail()
     try:
-        return values_of(names) if unify(bare(asked), bare(rename(told)), trail) else None
+        return values_of(asked.unknown) if unify(bare(asked.term), bare(rename(told)), trail) else None
     finally:
         undo(trail, 0)

@@ -17,6 +17,7 @@ from jacaros.runtime.errors import UsageError
 from jacaros.runtime.mas.agents.programs import source_folders
 from jacaros.runtime.mas.console import StandardConsole, entered, place_of_fault
 from jacaros.runtime.mas.deployment import AgentSpec, Deployment, FocusSpec
+from jacaros.runtime.mas.embedding.given import by_position
 from jacaros.runtime.mas.embedding.running_agent import RunningAgent
 from jacaros.runtime.mas.embedding.waits import RunEnded, RunWaits, UnknownAgent
 from jacaros.runtime.mas.launch import chosen_clock, in_fleet, load_deployment, mapped
@@ -415,25 +416,34 @@ class Mas:
 
     # ---- messages and output
 
-    def send(self, receiver: str, performative: str, content: object, sender: str = _PYTHON) -> None:
+    def send(
+        self,
+        receiver: str,
+        performative: str,
+        content: object,
+        /,
+        *arguments: object,
+        sender: str = _PYTHON,
+        **values: object,
+    ) -> None:
         """Send a message to an agent: ``mas.send("bob", "achieve", "clean(kitchen)")``.
 
         Args:
-            receiver: name of the agent.
-            performative: ``tell``, ``achieve``, ``untell``, ``signal`` …
-            content: a term in the syntax of the language, as text; or a plain value (see `jacaros.artifacts.env.values`).
+            receiver, performative, content, arguments, values: as for `Mailbox.send`.
             sender: name of the sender. Answers reach the `mailbox` with this name, if it exists.
 
         Raises:
             UnknownAgent: no participant has this name.
             AslError: the text is not a term.
+            UsageError: arguments follow a text that is not a name, or a value has no variable.
         """
         from jacaros.runtime.mas.embedding.mailbox import Mailbox
 
+        arguments, sender = by_position(content, arguments, "sender", sender)
         known = self._mailboxes.find(sender) if self._mailboxes is not None else None
         system, waits = self._open, self._running[1]
         (known or Mailbox(sender, system.deliver, system.agent_names, waits)).send(
-            receiver, performative, content
+            receiver, performative, content, *arguments, reply_to=None, **values
         )
 
     def mailbox(self, name: str) -> "Mailbox":

@@ -1,7 +1,10 @@
-"""An agent of a running system, for the Python code around it: literals, goals and formulae are text."""
+"""An agent of a running system, for the Python code around it.
+
+Literals, goals and formulae are text or data, see `jacaros.runtime.mas.embedding.given`.
+"""
 
 import asyncio
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Mapping
 from contextlib import closing
 from typing import Any
 
@@ -32,6 +35,7 @@ from jacaros.agents.terms.values import (
 )
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.mas.agents.host import AgentHost
+from jacaros.runtime.mas.embedding.given import Given, LiteralText, by_position, each_given, read_given
 from jacaros.runtime.mas.embedding.waits import AgentEnded, GoalFailed, RunWaits
 
 
@@ -48,57 +52,62 @@ class OpenMind:
 
     # ---- changes
 
-    def add_belief(self, *literals: str) -> None:
-        """Add beliefs, as the agent's own notes unless a literal names a source. The events are external.
+    def add_belief(self, literal: object, /, *arguments: object, **values: object) -> None:
+        """Add a belief, as the agent's own note unless the literal names a source. The event is external.
+
+        ::
+
+            bob.add_belief("seen(cup)")
+            bob.add_belief("seen", "Ann, O'Hara")  # arguments are never parsed
+            bob.add_belief("seen(Who)[source(ann)]", Who="Ann, O'Hara")
+
+        Args:
+            literal: text; or a `Structure`, `Atom`, `Literal`, dataclass, named tuple, or tuple of a name and arguments.
+            arguments: plain values (see `jacaros.artifacts.env.values`), if *literal* is a name.
+            values: plain values of variables in the text.
 
         Raises:
-            AslError: one is not a literal.
+            AslError: the text is not a literal.
+            UsageError: arguments follow a text that is not a name, or a value has no variable.
         """
-        self._change(belief_update.tell, *literals)
+        self._change(belief_update.tell, literal, arguments, values)
 
-    def remove_belief(self, *literals: str) -> None:
-        """Remove the agent's own notes (or those of the named source), the first match of each.
+    def remove_belief(self, literal: object, /, *arguments: object, **values: object) -> None:
+        """Remove the agent's own note (or that of the named source) that matches first. Arguments: see `add_belief`."""
+        self._change(belief_update.untell, literal, arguments, values)
 
-        Raises:
-            AslError: one is not a literal.
-        """
-        self._change(belief_update.untell, *literals)
+    def replace_belief(self, literal: object, /, *arguments: object, **values: object) -> None:
+        """Replace the agent's own note with the same functor, as ``-+b`` does. Arguments: see `add_belief`."""
+        self._change(_replace, literal, arguments, values)
 
-    def replace_belief(self, written: str) -> None:
-        """Replace the agent's own note with the same functor, as ``-+b`` does.
+    def post_goal(self, goal: object, /, *arguments: object, **values: object) -> None:
+        """Add a goal, with an intention of its own. Arguments: see `add_belief`."""
+        self._change(Mind.post_goal, goal, arguments, values)
 
-        Raises:
-            AslError: it is not a literal.
-        """
-        self._change(_replace, written)
-
-    def post_goal(self, written: str) -> None:
-        """Add a goal, with an intention of its own.
-
-        Raises:
-            AslError: it is not a literal.
-        """
-        self._change(Mind.post_goal, written)
-
-    def drop_goal(self, written: str) -> bool:
+    def drop_goal(self, goal: object, /, *arguments: object, **values: object) -> bool:
         """Drop the intentions and events of a goal, as ``.drop_desire`` does. Return whether there were any.
 
-        Raises:
-            AslError: it is not a literal.
+        Arguments: see `add_belief`.
         """
-        goal = literal(written)
-        found = bool(goals.intentions_for(self.mind, goal) or goals.goal_events(self.mind, goal))
+        term = read_given(goal, arguments, values).term
+        found = bool(goals.intentions_for(self.mind, term) or goals.goal_events(self.mind, term))
         if found:
-            self._change(goals.drop_desire, written)
+            self._change(goals.drop_desire, goal, arguments, values)
         return found
 
-    def _change(self, change: Callable[[Mind, Term], object], *literals: str) -> None:
-        """Change the mind by each literal; before its next step if it has its turn now."""
-        mind, terms = self.mind, [literal(each) for each in literals]
+    def _change(
+        self,
+        change: Callable[[Mind, Term], object],
+        given: object,
+        arguments: tuple[object, ...],
+        values: Mapping[str, object],
+    ) -> None:
+        """Change the mind by a literal; before its next step if it has its turn now."""
+        mind, literals = self.mind, each_given(given, arguments, values)
 
         def make(_: object = None) -> None:
-            for term in terms:
-                change(mind, term)
+            for each in literals:
+                change(mind, each.term)
 
         if mind.running:
             mind.do_soon(make)
@@ -106,74 +115,85 @@ class OpenMind:
             make()
         mind.architecture.ready()
 
-    def perceive(self, *literals: str) -> None:
-        """Add percepts that last: beliefs with ``source(percept)``.
+    def perceive(self, literal: object, /, *arguments: object, **values: object) -> None:
+        """Add a percept that lasts: a belief with ``source(percept)``. Arguments: see `add_belief`.
 
         Raises:
-            AslError: one is not a literal.
-            ValueError: one has variables.
+            AslError: the text is not a literal.
+            ValueError: the literal has variables.
         """
-        self._perceive("add", literals)
+        self._perceive("add", literal, arguments, values)
 
-    def perceive_no_more(self, *literals: str) -> None:
-        """Remove percepts that were added by `perceive`, written in the same way."""
-        self._perceive("remove", literals)
+    def perceive_no_more(self, literal: object, /, *arguments: object, **values: object) -> None:
+        """Remove a percept that was added by `perceive`, written in the same way."""
+        self._perceive("remove", literal, arguments, values)
 
-    def signal(self, *literals: str) -> None:
-        """Add percepts that do not last: events without beliefs."""
-        self._perceive("signal", literals)
+    def signal(self, literal: object, /, *arguments: object, **values: object) -> None:
+        """Add a percept that does not last: an event without a belief. Arguments: see `add_belief`."""
+        self._perceive("signal", literal, arguments, values)
 
-    def _perceive(self, kind: str, literals: Sequence[str]) -> None:
+    def _perceive(
+        self, kind: str, given: object, arguments: tuple[object, ...], values: Mapping[str, object]
+    ) -> None:
         percepts = []
-        for written in literals:
-            term = literal(written)
-            if not is_ground(term):
-                raise ValueError(f"a percept must be ground: {written}")
-            annotations = annotation_set((*annotations_of(term), SOURCE_PERCEPT))
-            percepts.append(Percept(kind, bare(term), annotations))
+        for each in each_given(given, arguments, values):
+            if not is_ground(each.term):
+                raise ValueError(f"a percept must be ground: {each.text}")
+            annotations = annotation_set((*annotations_of(each.term), SOURCE_PERCEPT))
+            percepts.append(Percept(kind, bare(each.term), annotations))
         self.mind.perceive(percepts)
 
     # ---- queries
 
-    def answers(self, formula: str) -> list[dict[str, Any]]:
-        """Return all answers of a formula (``battery(L) & L < 20``): plain values by variable name.
+    def answers(self, formula: object, /, *arguments: object, **values: object) -> list[dict[str, Any]]:
+        """Return all answers of a formula: plain values by name of its variables.
+
+        ::
+
+            bob.answers("battery(L) & L < Limit", Limit=20)
+            bob.answers("seen", "Ann, O'Hara")  # [{}] if bob believes it
+
+        Variables that are given a value are not among the results.
+
+        Args:
+            formula: text; or a literal as for `add_belief`. An argument None matches anything.
+            arguments, values: as for `add_belief`.
 
         Raises:
-            AslError: it is not a formula.
+            AslError: the text is not a formula.
+            UsageError: arguments follow a text that is not a name, or a value has no variable.
         """
-        return list(self._answers(formula))
+        return list(self._answers(formula, arguments, values))
 
-    def _answers(self, formula: str) -> Generator[dict[str, Any], None, None]:
+    def _answers(
+        self, formula: object, arguments: tuple[object, ...], values: Mapping[str, object]
+    ) -> Generator[dict[str, Any], None, None]:
         mind = self.mind
-        term, names = question(formula)
+        asked = read_given(formula, arguments, values, parse_formula)
         mark = len(mind.trail)
         try:
-            yield from (values_of(names) for _ in mind.context.answers(term))
+            yield from (values_of(asked.unknown) for _ in mind.context.answers(asked.term))
         finally:
             undo(mind.trail, mark)
 
-    def ask(self, formula: str) -> dict[str, Any] | None:
-        """Return the first answer of a formula, or None if it does not hold.
-
-        Raises:
-            AslError: it is not a formula.
-        """
-        with closing(self._answers(formula)) as found:
+    def ask(self, formula: object, /, *arguments: object, **values: object) -> dict[str, Any] | None:
+        """Return the first answer of a formula, or None if it does not hold. Arguments: see `answers`."""
+        with closing(self._answers(formula, arguments, values)) as found:
             return next(found, None)
 
-    def believes(self, formula: str) -> bool:
-        """Return whether a formula holds."""
-        return self.ask(formula) is not None
+    def believes(self, formula: object, /, *arguments: object, **values: object) -> bool:
+        """Return whether a formula holds. Arguments: see `answers`."""
+        return self.ask(formula, *arguments, **values) is not None
 
     @property
-    def beliefs(self) -> list[str]:
-        """Return all beliefs with their annotations, as text."""
-        return [text(each) for each in self.mind.beliefs.literals()]
+    def beliefs(self) -> list[LiteralText]:
+        """Return all beliefs with their annotations, as texts that can be given to an agent again."""
+        return [LiteralText(each) for each in self.mind.beliefs.literals()]
 
     @property
-    def goals(self) -> list[str]:
-        """Return all goals that it pursues or is about to pursue, as text without annotations."""
-        return [text(bare(goal)) for goal, _ in goals.desires(self.mind)]
+    def goals(self) -> list[LiteralText]:
+        """Return all goals that it pursues or is about to pursue, as texts without annotations."""
+        return [LiteralText(bare(goal)) for goal, _ in goals.desires(self.mind)]
 
 
 def _replace(mind: Mind, term: Term) -> None:
@@ -190,8 +210,8 @@ def literal(written: str) -> Term:
 
 def question(formula: str) -> tuple[Term, Variables]:
     """Parse a formula. Return its term and its variables by name."""
-    names = Variables()
-    return lower_value(parse_formula(formula), names.__getitem__), names
+    asked = read_given(formula, parse=parse_formula)
+    return asked.term, asked.unknown
 
 
 def values_of(names: Variables) -> dict[str, Any]:
@@ -277,46 +297,52 @@ class RunningAgent(OpenMind):
         """Whether it has ended: killed, or with the run."""
         return self._host.ended
 
-    def achieve(self, goal: str) -> "Goal":
+    def achieve(self, goal: object, /, *arguments: object, **values: object) -> "Goal":
         """Give it a goal, with an intention of its own. Await the returned goal to wait until it is achieved.
 
-        Raises:
-            AslError: it is not a literal.
-        """
-        return Goal(goal, self.mind, self._waits, lambda: self.ended)
+        Arguments: see `add_belief`. ``achieve("check_in", name)`` passes *name* as a string, whatever it contains.
 
-    async def until(self, formula: str, timeout: float | None = None) -> dict[str, Any]:
+        Raises:
+            AslError: the text is not a literal.
+            UsageError: arguments follow a text that is not a name, or a value has no variable.
+        """
+        return Goal(read_given(goal, arguments, values), self.mind, self._waits, lambda: self.ended)
+
+    async def until(
+        self, formula: object, /, *arguments: object, timeout: float | None = None, **values: object
+    ) -> dict[str, Any]:
         """Wait until a formula holds for the agent, such as ``count(X) & X > 2``.
 
         It is evaluated whenever the agent has something to do, as by ``.wait(Formula)``.
 
         Args:
-            formula: in the language. It may use rules of the program and internal actions.
+            formula, arguments, values: as for `answers`. A text may use rules of the program and internal actions.
             timeout: time limit in seconds of the run's clock. None: no limit.
 
         Returns:
-            Plain values by variable name.
+            Plain values by name of the variables that are not given a value.
 
         Raises:
-            AslError: it is not a formula.
+            AslError: the text is not a formula.
+            UsageError: arguments follow a text that is not a name, or a value has no variable.
             TimeoutError: it did not hold in time. The text shows related beliefs.
             AgentEnded: the agent ended first.
             RunEnded: the run ended first.
         """
         mind = self.mind
-        if not mind.running and (found := self.ask(formula)) is not None:
+        arguments, timeout = by_position(formula, arguments, "timeout", timeout)
+        if not mind.running and (found := self.ask(formula, *arguments, **values)) is not None:
             return found
-        awaited = _Awaited(mind, formula)
+        awaited = _Awaited(mind, read_given(formula, arguments, values, parse_formula))
         try:
             return await self._waits.wait(
-                awaited.future, lambda: self._does_not_hold(formula), timeout, self.name
+                awaited.future, lambda: self._does_not_hold(awaited.asked), timeout, self.name
             )
         finally:
             awaited.forget()
 
-    def _does_not_hold(self, formula: str) -> str:
-        term, _ = question(formula)
-        mentioned = {symbol.name for symbol in _functors(term)}
+    def _does_not_hold(self, asked: Given) -> str:
+        mentioned = {symbol.name for symbol in _functors(asked.term)}
         beliefs = self._host.mind.beliefs.literals() if self._host.mind is not None else ()
         believed = [
             text(bare(each))
@@ -324,7 +350,7 @@ class RunningAgent(OpenMind):
             if any(symbol.name in mentioned for symbol in _functors(each))
         ]
         related = f"it believes {', '.join(believed[:5])}" if believed else "it has no related belief"
-        return f"{formula} did not hold for agent {self.name} ({related})"
+        return f"{asked.text} did not hold for agent {self.name} ({related})"
 
     def stored(self) -> dict[str, Any]:
         """Return the complete state of the agent as JSON data. `Mas.add_agent` with ``stored=`` continues from it.
@@ -351,19 +377,18 @@ class RunningAgent(OpenMind):
 class _Awaited:
     """A condition that Python code waits for."""
 
-    def __init__(self, mind: Mind, formula: str) -> None:
+    def __init__(self, mind: Mind, asked: Given) -> None:
         self.future: asyncio.Future[dict[str, Any]] = asyncio.get_running_loop().create_future()
-        self._formula = formula
-        term, self._names = question(formula)
-        self.forget = WatchedCondition(mind, term, self._ended).forget
+        self.asked = asked
+        self.forget = WatchedCondition(mind, asked.term, self._ended).forget
 
     def _ended(self, fault: Exception | None) -> None:
         if self.future.done():
             return
         if fault is None:
-            self.future.set_result(values_of(self._names))
+            self.future.set_result(values_of(self.asked.unknown))
         else:
-            self.future.set_exception(UsageError(f"{self._formula} cannot be evaluated: {told(fault)}"))
+            self.future.set_exception(UsageError(f"{self.asked.text} cannot be evaluated: {told(fault)}"))
 
 
 class Goal(PursuedGoal):
@@ -373,8 +398,8 @@ class Goal(PursuedGoal):
     or was dropped. A goal that is not awaited is pursued, too. Its failure is logged, like that of every goal.
     """
 
-    def __init__(self, written: str, mind: Mind, waits: RunWaits, agent_ended: Callable[[], bool]) -> None:
-        super().__init__(written, WatchedGoal(mind, literal(written), self._news, self._news))
+    def __init__(self, goal: Given, mind: Mind, waits: RunWaits, agent_ended: Callable[[], bool]) -> None:
+        super().__init__(goal.text, WatchedGoal(mind, goal.term, self._news, self._news))
         self._mind = mind
         self._agent_ended = agent_ended
         self._waits = waits

@@ -236,7 +236,8 @@ async def test_an_agent_continues_in_another_run(mas: Mas, lines: list[str], log
 async def test_an_agent_that_continues_perceives_anew(mas: Mas, lines: list[str]) -> None:
     program = "+door(X) <- +last(X); .print(X)."
     bob = mas.add_agent("bob", program)
-    bob.perceive("door(open)", "door(wide)")
+    bob.perceive("door(open)")
+    bob.perceive("door(wide)")
     await mas.until_idle()
     kept = bob.stored()
     bob.kill()

@@ -1,0 +1,171 @@
+"""What Python code gives to agents: text of the language, or data, which is never parsed.
+
+================================================  ==========================================================
+given                                             meaning
+================================================  ==========================================================
+``"check_in(ann)"``                               text of the language
+``"check_in(Who)", Who="Ann, O'Hara"``            text, with values for its variables
+``"check_in", "Ann, O'Hara"``                     a name and its arguments
+``("check_in", "Ann, O'Hara")``                   the same as one object
+`Structure`, `Atom`, `Literal`, `LiteralText`     itself
+a dataclass or named tuple                        its structure, see `jacaros.artifacts.env.values.plain`
+================================================  ==========================================================
+"""
+
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from jacaros.agents.body.values import UNKEPT, symbol_of, to_term
+from jacaros.agents.language import nodes
+from jacaros.agents.language.loader import parse_literal, parse_term
+from jacaros.agents.language.lowering import Variables, lower
+from jacaros.agents.python.agent import Literal, literal_of, term_of
+from jacaros.agents.terms.substitution import rename, resolve
+from jacaros.agents.terms.text import text
+from jacaros.agents.terms.values import Term, functor_of, make_list
+from jacaros.artifacts.env.values import Atom, plain
+from jacaros.runtime.errors import UsageError
+from jacaros.runtime.files.texts import suggestion
+
+T = TypeVar("T")
+
+
+class LiteralText(str):
+    """A belief or goal as text. Given to an agent again, it is exactly this literal, whatever its strings contain."""
+
+    __slots__ = ("_term",)
+
+    _term: Term
+
+    def __new__(cls, term: Term) -> "LiteralText":
+        """Write *term*."""
+        written = super().__new__(cls, text(term))
+        written._term = term
+        return written
+
+    @property
+    def literal(self) -> Literal:
+        """Its functor, arguments and annotations as Python values."""
+        return literal_of(self._term)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return str, (str(self),)
+
+
+@dataclass(frozen=True, slots=True)
+class Given:
+    """A term from Python code.
+
+    Attributes:
+        term: the term, which shares no variable with others.
+        text: for messages: as given, or the text of the term.
+        unknown: its variables without a value, by name.
+    """
+
+    term: Term
+    text: str
+    unknown: Variables
+
+
+def read_given(
+    given: object,
+    arguments: Sequence[object] = (),
+    values: Mapping[str, object] | None = None,
+    parse: Callable[[str], nodes.Term] = parse_literal,
+) -> Given:
+    """Return the term of what Python code gives.
+
+    Args:
+        given, arguments, values: see the table of this module.
+        parse: reads a text. All but `parse_term` also require that data is a literal.
+
+    Raises:
+        AslError: the text has errors.
+        UsageError: a text with arguments is not a name, a value has no variable, or data is not a literal.
+        ValueError: a value contains itself, or is nested deeper than 200 levels.
+    """
+    if type(given) is str and not arguments:
+        return _of_text(given, values or {}, parse)
+    if values:
+        raise UsageError(
+            f"unexpected keyword argument `{next(iter(values))}`: only the variables of a text have values"
+        )
+    term = _of_data(given, arguments)
+    if parse is not parse_term and functor_of(term) is None:
+        raise UsageError(f"expected a literal, found {text(term)}")
+    return Given(term, text(term), Variables())
+
+
+def _of_text(written: str, values: Mapping[str, object], parse: Callable[[str], nodes.Term]) -> Given:
+    names = Variables()
+    term = lower(parse(written), names.__getitem__)
+    for name, value in values.items():
+        if name not in names:
+            variable = name.capitalize()
+            otherwise = (
+                f"pass arguments by position, or write `{variable}` in the text and pass {variable}=..."
+            )
+            raise UsageError(
+                f"`{written}` has no variable `{name}`\n  = help: {suggestion(variable, names, otherwise)}"
+            )
+        names.pop(name).ref = value_term(value)
+    term = resolve(term)
+    return Given(term, text(term) if values else written, names)
+
+
+def _of_data(given: object, arguments: Sequence[object]) -> Term:
+    if isinstance(given, LiteralText) and not arguments:
+        return rename(given._term)
+    if type(given) is tuple and given and not arguments:
+        given, *arguments = given
+        if not arguments and isinstance(given, str):
+            return symbol_of(given, 0)
+    if not arguments:
+        return value_term(given)
+    if not _is_name(given):
+        raise UsageError(
+            f"expected a name before the arguments, found `{given}`\n"
+            "  = help: to give values to the variables of a text, name them: X=..."
+        )
+    return (symbol_of(str(given), len(arguments)), *map(value_term, arguments))
+
+
+def _is_name(given: object) -> bool:
+    """Return whether *given* is an `Atom`, or a text that names a functor without quotes."""
+    return isinstance(given, Atom) or (type(given) is str and symbol_of(given, 1).name[0] != "'")
+
+
+def value_term(value: object) -> Term:
+    """Return the term of a value; a text is a string. Lists may contain literals, like contents of messages.
+
+    Raises:
+        ValueError: it contains itself, or is nested deeper than 200 levels.
+    """
+    if isinstance(value, Literal):
+        return term_of(value)
+    if type(value) is list and any(isinstance(each, Literal) for each in value):
+        return make_list(map(value_term, value))
+    return to_term(plain(value), UNKEPT)
+
+
+def by_position(
+    given: object, arguments: tuple[object, ...], name: str, default: T
+) -> tuple[tuple[object, ...], T]:
+    """Return the arguments of *given*, and an option that older programs pass by position.
+
+    Before names took arguments, the only positional argument after the text was this option.
+    """
+    if len(arguments) != 1 or _is_name(given):
+        return arguments, default
+    warnings.warn(f"pass {name} by keyword: {name}=...", DeprecationWarning, stacklevel=3)
+    return (), arguments[0]  # type: ignore[return-value]
+
+
+def each_given(given: object, arguments: tuple[object, ...], values: Mapping[str, object]) -> list[Given]:
+    """Return the literal, or the several ones that older programs pass in one call."""
+    if not arguments or _is_name(given):
+        return [read_given(given, arguments, values)]
+    warnings.warn("give one literal per call", DeprecationWarning, stacklevel=4)
+    return [read_given(each, (), values) for each in (given, *arguments)]
