@@ -152,6 +152,13 @@ class Service:
             self._rested_at = now + REST * (now - begun)
 
 
+def service_of(system: System) -> Service:
+    """Return the one service of a run, which all doors share. It is created on first use."""
+    if not isinstance(system.service, Service):
+        system.service = Service(system)
+    return system.service
+
+
 class Session:
     """A caller's session. Each request has an effect, or raises `RequestError`.
 

@@ -78,6 +78,7 @@ class System:
         services: the directory facilitator. May be replaced before the run starts.
         tracer: creates the causes; None while nothing observes the run.
         fleet: the fleet that the system has joined, or None.
+        service: what its agents offer to callers outside (`jacaros.serving.service.service_of`); None before its first use.
     """
 
     def __init__(
@@ -110,6 +111,7 @@ class System:
         self._run_environment: RunEnvironment | None = None
         self.tracer: Tracer | None = None
         self.fleet: Fleet | None = None
+        self.service: object = None
         self._situated: list[Callable[[Environment], None]] = []
         self._closers: list[Callable[[], Awaitable[None]]] = []
         self._join = join
