@@ -10,8 +10,8 @@ class Cause(NamedTuple):
     Attributes:
         id: number of this link, unique in the run.
         parent: number of the link that led to it, 0 at the beginning of a chain.
-        kind: stage of the chain: ``sample``, ``property``, ``signal``, ``event``, ``act``, ``operation``, ``command``, or
-            ``remote`` for a step of an agent of another system.
+        kind: stage of the chain: ``sample``, ``property``, ``signal``, ``event``, ``act``, ``operation``, ``command``,
+            ``remote`` for a step of an agent of another system, or ``request`` of a caller outside.
         what: short description.
     """
 

@@ -56,6 +56,7 @@ class OfferingAgent:
         self.name, self.host = host.name, host
         self.offers: tuple[Offer, ...] = host.mind.program.offers
         self.alive: dict[str, RequestedGoal] = {}
+        self._pending: dict[str, RequestedGoal] = {}
         self._announce = announce
         self._queue: deque[tuple[RequestedGoal, Cause | None]] = deque()
         self._watched: dict[str, Watch] = {}
@@ -89,10 +90,11 @@ class OfferingAgent:
 
     def take(self, goal: RequestedGoal, cause: Cause | None) -> None:
         """Take a goal: pursue it now, later, or not at all, as the offer says."""
-        busy = [each for each in self.alive.values() if each.offer is goal.offer and each.state != WAITING]
         limit = goal.offer.at_most
+        busy = [] if limit is None else self._busy_with(goal.offer)
         self.alive[goal.id] = goal
         if limit is None or len(busy) < limit:
+            self._pending[goal.id] = goal
             goal.post(cause)
         elif goal.offer.when_busy == "replace":
             self._queue.appendleft((goal, cause))
@@ -107,16 +109,24 @@ class OfferingAgent:
     def ended(self, goal: RequestedGoal) -> None:
         """A goal has ended: the next one that waits has its turn."""
         self.alive.pop(goal.id, None)
+        self._pending.pop(goal.id, None)
+        if not self._queue:
+            return
         waiting = [each for each in self._queue if each[0].state == WAITING]
         following = next((each for each in waiting if each[0].offer is goal.offer), None)
         self._queue = deque(each for each in waiting if each is not following)
         if following is not None:
+            self._pending[following[0].id] = following[0]
             following[0].post(following[1])
 
+    def _busy_with(self, offer: Offer) -> list[RequestedGoal]:
+        return [each for each in self.alive.values() if each.offer is offer and each.state != WAITING]
+
     def _had_turn(self) -> None:
-        for each in tuple(self.alive.values()):
-            if each.state == PENDING:
-                each.look()
+        for each in tuple(self._pending.values()):
+            each.look()
+            if each.state != PENDING:
+                self._pending.pop(each.id, None)
         if self._watched and not self._looks_soon:
             self._looks_soon = True
             self.host.system.clock.call_later(PERIOD, self._look)

@@ -258,7 +258,8 @@ class Session:
             return self._give(offering, offer, arguments)
 
     def _give(self, agent: OfferingAgent, offer: Offer, arguments: Sequence[Any]) -> RequestedGoal:
-        self._own = {id: each for id, each in self._own.items() if not each.over}
+        if len(self._own) >= MOST_ALIVE:
+            self._own = {id: each for id, each in self._own.items() if not each.over}
         if len(self._own) >= MOST_ALIVE:
             raise RequestError("too_many_requests", f"{MOST_ALIVE} goals of this session have not ended")
         service = self._service

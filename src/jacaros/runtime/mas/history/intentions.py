@@ -151,7 +151,8 @@ class IntentionRecords:
     def _levels(self, frames: Sequence[Frame], known: Sequence[_Level]) -> list[_Level]:
         """Return the goals of a stack from the bottom up, with their current steps."""
         frames = [frame for frame in frames if frame[GOAL][0].functor.namespace != "jacaros"]
-        levels = list(zip(frames, [*frames[1:], None], strict=True))
+        # A goal from outside that has not had its turn has no frame of a plan yet.
+        levels = list(zip(frames, [*frames[1:], None], strict=False))
         if len(levels) > DEEPEST:
             levels = [levels[0], *levels[1 - DEEPEST :]]
         return [
