@@ -123,7 +123,7 @@ class Service:
     def cause(self, caller: Caller, what: str) -> Cause | None:
         """Return the cause of what a request leads to, for `why`."""
         tracer = self.system.tracer
-        return None if tracer is None else tracer.link("request", f"{caller} {what}")
+        return None if tracer is None else tracer.link("request", f"asked by {caller}: {what}")
 
     def note(self, caller: Caller, what: str) -> None:
         """Record what a caller has changed."""
@@ -267,7 +267,7 @@ class Session:
             secrets.token_hex(8), agent.host, offer, arguments, self.caller, service.goal_changed
         )
         self._own[goal.id] = service.goals[goal.id] = goal
-        agent.take(goal, service.cause(self.caller, f"asks {agent.name} to !{goal.written}"))
+        agent.take(goal, service.cause(self.caller, f"!{goal.written} of {agent.name}"))
         return goal
 
     def goal(self, id: str) -> RequestedGoal:
