@@ -114,6 +114,8 @@ class OfferingAgent:
             return
         waiting = [each for each in self._queue if each[0].state == WAITING]
         following = next((each for each in waiting if each[0].offer is goal.offer), None)
+        if following is not None and len(self._busy_with(goal.offer)) >= (goal.offer.at_most or 0):
+            following = None
         self._queue = deque(each for each in waiting if each is not following)
         if following is not None:
             self._pending[following[0].id] = following[0]
