@@ -1,6 +1,7 @@
 """Beliefs that callers may see, questions that they may ask, and limits of what they may send."""
 
 import asyncio
+from contextlib import suppress
 
 import pytest
 from hypothesis import given, settings
@@ -86,10 +87,10 @@ _OFFER = Offer(
 @settings(max_examples=500, deadline=None)
 @given(st.dictionaries(st.sampled_from([each.name for each in _OFFER.parameters] + ["other"]), _DATA))
 def test_any_data_is_an_argument_or_refused(data: dict[str, object]) -> None:
-    try:
+    terms = None
+    with suppress(RequestError):  # any other exception is a defect
         terms = terms_of(_OFFER, data)
-    except RequestError as error:
-        assert error.code == "invalid_arguments"
+    if terms is None:
         return
     for name, term in zip([each.name for each in _OFFER.parameters], terms, strict=True):
         if name != "any":
