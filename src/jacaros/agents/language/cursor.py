@@ -5,12 +5,12 @@
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final, NamedTuple, NoReturn
 
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span
 from jacaros.agents.language.lexer import RESERVED, Token
-from jacaros.agents.language.nodes import Declaration
+from jacaros.agents.language.nodes import Declaration, Section
 from jacaros.agents.terms.functions import is_function
 from jacaros.agents.terms.operators import WORDS, symbols_of
 from jacaros.agents.terms.values import ARITHMETIC
@@ -257,6 +257,7 @@ class ProgramNames:
         functions: the functions that the program registers, with their numbers of arguments.
         known: the functions of the project, with their minimum and maximum numbers of arguments.
         actions: internal actions by name.
+        library: the clauses of library files that have been parsed; programs that are read with the same names share them.
     """
 
     unnamed: Iterator[int]
@@ -265,6 +266,11 @@ class ProgramNames:
     functions: dict[str, int] = field(default_factory=dict)
     known: Mapping[str, tuple[int, int | None]] = field(default_factory=dict)
     actions: Mapping[str, Declaration] = field(default_factory=dict)
+    library: dict[str, Section] = field(default_factory=dict)
+
+    def for_program(self) -> "ProgramNames":
+        """Return the names of a further program: the same, but for the functions that it registers."""
+        return replace(self, functions={})
 
     def is_function(self, name: str, arity: int) -> bool:
         """Return whether *name* is an arithmetic function of the language, program or project with that

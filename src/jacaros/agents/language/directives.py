@@ -437,7 +437,16 @@ class DirectiveProcessor:
         if found is not None:
             self._refuse_circles(found, path)
             self._included += 1
-            section.extend(self.read_file(found, namespaces))
+            section.extend(self._clauses_of(found, namespaces))
+
+    def _clauses_of(self, file: SourceFile, namespaces: Namespaces) -> nodes.Section:
+        """Parse an included file. A library file is the same in all programs that register no functions."""
+        if file.name[0] != "$" or namespaces.current is not None or self._names.functions:
+            return self.read_file(file, namespaces)
+        known = self._names.library
+        if file.name not in known:
+            known[file.name] = self.read_file(file, namespaces)
+        return known[file.name]
 
     def _refuse_circles(self, found: SourceFile, path: str) -> None:
         if found.name in self._open_files:

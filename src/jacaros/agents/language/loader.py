@@ -49,24 +49,35 @@ def load_program(
     Raises:
         AslError: with all errors of all files.
     """
-    program, diagnostics = read_program(SourceFile(name, text), read, functions, actions)
+    program, diagnostics = read_program(SourceFile(name, text), read, new_names(functions, actions))
     _refuse_errors(diagnostics)
     return program, diagnostics
+
+
+def new_names(
+    functions: Mapping[str, tuple[int, int | None]] | None = None,
+    actions: Mapping[str, Declaration] | None = None,
+) -> ProgramNames:
+    """Return the names that a program may use; see `load_program`."""
+    # Keep the caller's mapping even if it is empty: it may fill up as names are looked up.
+    known = {} if functions is None else functions
+    return ProgramNames(count(1), count(1), count(1), known=known, actions={} if actions is None else actions)
 
 
 def read_program(
     file: SourceFile,
     read: ReadSource | None = None,
-    functions: Mapping[str, tuple[int, int | None]] | None = None,
-    actions: Mapping[str, Declaration] | None = None,
+    names: ProgramNames | None = None,
 ) -> tuple[nodes.Program, list[Diagnostic]]:
-    """Parse what is valid of the program in *file*; return it with all errors and warnings. See `load_program`."""
+    """Parse what is valid of the program in *file*; return it with all errors and warnings.
+
+    Args:
+        file: the AgentSpeak source.
+        read: finds an included file; see `load_program`.
+        names: those that the program may use, from `new_names`.
+    """
     diagnostics: list[Diagnostic] = []
-    # Keep the caller's mapping even if it is empty: it may fill up as names are looked up.
-    known = {} if functions is None else functions
-    names = ProgramNames(
-        count(1), count(1), count(1), known=known, actions={} if actions is None else actions
-    )
+    names = names or new_names()
     section = DirectiveProcessor(read, names, diagnostics).read_file(file)
     _check_labels(section.plans, diagnostics)
     return section.program(), _ordered(diagnostics)

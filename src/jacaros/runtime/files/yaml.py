@@ -330,8 +330,9 @@ def _loaded(reader: YAML, text: str, problems: list[Problem]) -> Any:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # YAML 1.2 allows an anchor to be given again
-            _check(reader.compose(StringIO(text)), twice)
-            document = reader.load(StringIO(text))
+            composed = reader.compose(StringIO(text))
+            _check(composed, twice)
+            document = None if composed is None else reader.constructor.construct_document(composed)
         problems += twice
         return document
     except _Unusable as unusable:

@@ -13,7 +13,7 @@ from jacaros.agents.checks.goals import KnownActions
 from jacaros.agents.checks.handlers import missing_marks, never_posted
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import AslError, Diagnostic, SourceFile
-from jacaros.agents.language.loader import read_program
+from jacaros.agents.language.loader import new_names, read_program
 from jacaros.agents.mind.actions.internal_action import STANDARD
 from jacaros.runtime.files.python_modules import ModuleUnreadable, ProjectModules
 from jacaros.runtime.files.texts import is_file
@@ -21,7 +21,7 @@ from jacaros.runtime.files.yaml import Problem
 from jacaros.runtime.mas.agents.lifecycle import check_classes
 from jacaros.runtime.mas.agents.programs import (
     NEVER_SELECTED,
-    Programs,
+    SourcePath,
     concerns_author,
     source_folders,
     text_of,
@@ -239,6 +239,9 @@ class _Checked:
     def __init__(self, deployment: Deployment, folders: tuple[Path, ...], findings: Findings) -> None:
         self.deployment, self._folders, self._findings = deployment, folders, findings
         self._modules = ProjectModules(*folders, unseen=findings.unseen)
+        self._code = PythonCode(self._modules)
+        self._path = SourcePath(folders)
+        self._names = new_names(self._code.functions, self._code.actions)
         self.programs: list[tuple[AgentSpec, nodes.Program]] = []
 
     @cached_property
@@ -262,12 +265,11 @@ class _Checked:
         """Check the program of an agent with its includes and declarations. Return whether it can run."""
         path, findings = agent.source_path, self._findings
         findings.files.add(path.resolve())
-        code = PythonCode(self._modules)
-        programs = Programs(self._folders, lambda _: None, code)
+        code = self._code
         sources: list[SourceFile] = []
 
         def include(name: str, including: str) -> tuple[str, str]:
-            found, text = programs.path.include(name, including)
+            found, text = self._path.include(name, including)
             if not found.startswith("$"):
                 findings.files.add(Path(found).resolve())
                 sources.append(SourceFile(found, text))
@@ -278,7 +280,7 @@ class _Checked:
         except AslError as error:
             findings.diagnostics += error.diagnostics
             return False
-        program, diagnostics = read_program(sources[0], include, code.functions, code.actions)
+        program, diagnostics = read_program(sources[0], include, self._names.for_program())
         diagnostics += [replace(error, code="unreadable-file") for error in code.take_errors()]
         errors = [diagnostic for diagnostic in diagnostics if diagnostic.severity == "error"]
         known = KnownActions(code.actions, code.help, code.is_unseen)
