@@ -378,10 +378,14 @@ class _Collector:
                 self._push_children(node, at)
 
     def _push_children(self, node: nodes.Node, at: _At, without: nodes.Node | None = None) -> None:
+        self._push_parts(node, [each for each in children(node) if each is not without], at)
+
+    def _push_parts(self, node: nodes.Node, below: Sequence[nodes.Node], at: _At) -> None:
         asked = set(map(id, conditions(node)))
-        below = [each for each in children(node) if each is not without]
-        for each in reversed(below):
-            self._stack.append((each, at._replace(asked=id(each) in asked)))
+        plain = at._replace(asked=False) if at.asked else at
+        self._stack += [
+            (each, plain._replace(asked=True) if id(each) in asked else plain) for each in reversed(below)
+        ]
 
     def _react(self, trigger: nodes.Trigger) -> None:
         literal = trigger.literal
@@ -413,9 +417,7 @@ class _Collector:
             at = _At(passed=False)
         elif at.passed and is_own(literal):
             self.found.mentioned.add(key_of(literal))
-        asked = set(map(id, conditions(literal)))
-        for each in reversed(list(_below(literal))):
-            self._stack.append((each, at._replace(asked=id(each) in asked)))
+        self._push_parts(literal, list(_below(literal)), at)
 
     def _string(self, string: nodes.String, at: _At) -> None:
         if at.passed and is_own(string):

@@ -16,7 +16,7 @@ from jacaros.agents.checks.formulas import labelled
 from jacaros.agents.checks.goals import ON_GOALS, PRINTING, KnownActions
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic, Span, problem
-from jacaros.agents.language.nodes import ByKind, names_in, walk
+from jacaros.agents.language.nodes import ByKind, names_in, nodes_in, walk
 from jacaros.runtime.files.texts import close_matches, did_you_mean
 
 Key = tuple[str, int]
@@ -150,17 +150,14 @@ def is_open(found: ByKind, known: KnownActions) -> bool:
     """Return whether goals or plans come from elsewhere: a plan for any goal, a computed goal, plans added at run time."""
     return (
         any(isinstance(each.literal, nodes.Variable) and each.kind for each in found.of(nodes.Trigger))
-        or (
-            any(isinstance(step.goal, nodes.Variable) for step in found.of(nodes.Achieve))
-            and any(map(_computes_goal, found.of(nodes.Plan)))
-        )
+        or any(map(_computes_goal, found.of(nodes.Plan)))
         or any(known.of(call).brings_in for call in found.of(nodes.InternalAction))
     )
 
 
 def _computes_goal(plan: nodes.Plan) -> bool:
     """Return whether a plan posts a goal from elsewhere. An argument of its own goal is in the program that posts that."""
-    steps = ByKind(plan.body, plan.subplans).of(nodes.Achieve)
+    steps = nodes_in(nodes.Achieve, (plan.body, plan.subplans))
     names = {step.goal.name for step in steps if isinstance(step.goal, nodes.Variable)}
     return bool(names) and not (plan.trigger.kind == "!" and names.issubset(names_in(plan.trigger.literal)))
 

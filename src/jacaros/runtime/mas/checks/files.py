@@ -32,6 +32,7 @@ from jacaros.runtime.mas.deployment import AgentSpec, Deployment, ProjectError
 from jacaros.runtime.mas.project.reading import read_project
 
 if TYPE_CHECKING:
+    from jacaros.artifacts.env.artifact import Artifact
     from jacaros.runtime.mas.checks.artifacts import FindType
     from jacaros.runtime.mas.checks.beliefs import Whole
     from jacaros.runtime.mas.checks.observables import Observables
@@ -353,8 +354,7 @@ class _Checked:
         except ProjectError as error:
             return list(map(_of_project, error.diagnostics))
         programs = self.programs if is_known else []
-        trees = [program for _, program in programs]
-        types = made_types(self.deployment, trees, find_type)
+        types = self._made_types if is_known else made_types(self.deployment, (), find_type)
         if is_known:
             self._findings.diagnostics[:] = map(operations_as_goals(types or ()), self._findings.diagnostics)
         found = check_artifacts(programs, self._folders, find_type, types)
@@ -420,15 +420,19 @@ class _Checked:
         self._findings.diagnostics += check_beliefs(self._whole(), around)
 
     def _whole(self) -> "Whole":
-        from jacaros.runtime.mas.checks.artifacts import made_types  # here: see `of_artifacts`
-        from jacaros.runtime.mas.checks.beliefs import Whole
+        from jacaros.runtime.mas.checks.beliefs import Whole  # here: see `of_artifacts`
 
-        trees = [program for _, program in self.programs]
+        return Whole([program for _, program in self.programs], self._made_types)
+
+    @cached_property
+    def _made_types(self) -> "list[type[Artifact]] | None":
+        """The types of all artifacts; None if they are not known. Asked for when all programs are read."""
+        from jacaros.runtime.mas.checks.artifacts import made_types  # here: see `of_artifacts`
+
         try:
-            find_type = self._find_type
+            return made_types(self.deployment, [program for _, program in self.programs], self._find_type)
         except ModuleUnreadable:  # reported with the artifacts
-            return Whole(trees, None)
-        return Whole(trees, made_types(self.deployment, trees, find_type))
+            return None
 
     def _others(self) -> "list[Whole] | None":
         """Return the other projects that run these programs; None if one of them is not known."""
