@@ -18,6 +18,7 @@ from jacaros.runtime.mas.agents.programs import source_folders
 from jacaros.runtime.mas.console import StandardConsole, entered, place_of_fault
 from jacaros.runtime.mas.deployment import AgentSpec, Deployment, FocusSpec
 from jacaros.runtime.mas.embedding.given import by_position
+from jacaros.runtime.mas.embedding.log_records import log_record, logging_configured
 from jacaros.runtime.mas.embedding.running_agent import RunningAgent
 from jacaros.runtime.mas.embedding.waits import RunEnded, RunWaits, UnknownAgent
 from jacaros.runtime.mas.launch import chosen_clock, in_fleet, load_deployment, mapped
@@ -54,14 +55,14 @@ class PrintedConsole:
 
     Args:
         on_print: prints the output of agents. Default: print ``[agent] text`` to standard output.
-        on_log: logs lines. Default: standard error.
+        on_log: logs lines. Default: the logger ``jacaros`` if the program has configured it, otherwise standard error.
     """
 
     def __init__(self, on_print: OnPrint | None, on_log: OnLog | None) -> None:
         # Looks up the standard streams on each write: tests and notebooks replace them.
         self._standard = StandardConsole()
         self._on_print = on_print or self._standard.print
-        self._on_log = on_log or self._standard.log
+        self._on_log = on_log or (log_record if logging_configured() else self._standard.log)
         self._listeners: list[OnPrint] = []
 
     def listen(self, callback: OnPrint) -> Callable[[], None]:
@@ -119,7 +120,8 @@ class Mas:
         folder: folder of an empty system, in which programs, included files and Python modules are searched. Default: the
             current folder.
         on_print: called with agent and text whenever an agent prints. Default: print ``[agent] text`` to standard output.
-        on_log: called with text and level of each line of the log. Default: standard error.
+        on_log: called with text and level of each line of the log. Default: the logger ``jacaros`` if the program has
+            configured it (see `jacaros.runtime.mas.embedding.log_records`), otherwise standard error.
         join: joins the system to a fleet, see `jacaros.fleet.joining`.
         changes: fields of `RunOptions` that override those of *options*, such as ``seed=1, world="patrol"``.
 
@@ -428,14 +430,7 @@ class Mas:
     ) -> None:
         """Send a message to an agent: ``mas.send("bob", "achieve", "clean(kitchen)")``.
 
-        Args:
-            receiver, performative, content, arguments, values: as for `Mailbox.send`.
-            sender: name of the sender. Answers reach the `mailbox` with this name, if it exists.
-
-        Raises:
-            UnknownAgent: no participant has this name.
-            AslError: the text is not a term.
-            UsageError: arguments follow a text that is not a name, or a value has no variable.
+        Answers reach the `mailbox` of the name *sender*, if it exists. For arguments and errors, see `Mailbox.send`.
         """
         from jacaros.runtime.mas.embedding.mailbox import Mailbox
 

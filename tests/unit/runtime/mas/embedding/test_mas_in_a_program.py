@@ -95,15 +95,6 @@ async def test_focus_takes_names_and_paths(mas: Mas) -> None:
     assert "e" not in [agent.name for agent in mas.agents]
 
 
-async def test_lines_go_to_standard_output_by_default(capsys: pytest.CaptureFixture[str]) -> None:
-    async with Mas() as mas:
-        mas.add_agent("bob", "!go. +!go <- .print(hi); .log(warning, careful).")
-        await mas.until_idle()
-    shown = capsys.readouterr()
-    assert shown.out == "[bob] hi\n"
-    assert "careful" in shown.err
-
-
 async def test_a_session_can_act_beside_the_agents(mas: Mas) -> None:
     await mas.make_artifact("counter", Counter, [5])
     bob = mas.add_agent("bob", "", focus=["counter"])
