@@ -260,10 +260,6 @@ def _other_to_term(value: Any, references: References) -> Term:
         return to_term(simple, references)
     if isinstance(simple, Out):
         return to_term(simple.value, references) if simple.is_set else Var()
-    if isinstance(simple, str):
-        return String(simple)
-    if isinstance(simple, (int, float)):
-        return number(simple)
     return reference_to(simple)
 
 

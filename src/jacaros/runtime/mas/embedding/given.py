@@ -17,7 +17,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from jacaros.agents.body.values import UNKEPT, symbol_of, to_term
+from jacaros.agents.body.values import symbol_of
 from jacaros.agents.language import nodes
 from jacaros.agents.language.loader import parse_literal, parse_term
 from jacaros.agents.language.lowering import Variables, lower
@@ -35,20 +35,20 @@ T = TypeVar("T")
 class LiteralText(str):
     """A belief or goal as text. Given to an agent again, it is exactly this literal, whatever its strings contain."""
 
-    __slots__ = ("_term",)
+    __slots__ = ("term",)
 
-    _term: Term
+    term: Term
 
     def __new__(cls, term: Term) -> "LiteralText":
         """Write *term*."""
         written = super().__new__(cls, text(term))
-        written._term = term
+        written.term = term
         return written
 
     @property
     def literal(self) -> Literal:
         """Its functor, arguments and annotations as Python values."""
-        return literal_of(self._term)
+        return literal_of(self.term)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return str, (str(self),)
@@ -75,22 +75,19 @@ def read_given(
     values: Mapping[str, object] | None = None,
     parse: Callable[[str], nodes.Term] = parse_literal,
 ) -> Given:
-    """Return the term of what Python code gives.
-
-    Args:
-        given, arguments, values: see the table of this module.
-        parse: reads a text. All but `parse_term` also require that data is a literal.
+    """Return the term of what Python code gives; *parse* reads a text.
 
     Raises:
         AslError: the text has errors.
-        UsageError: a text with arguments is not a name, a value has no variable, or data is not a literal.
+        UsageError: a text with arguments is not a name, a value has no variable, or data is not a literal, while *parse*
+            is not `parse_term`.
         ValueError: a value contains itself, or is nested deeper than 200 levels.
     """
     if type(given) is str and not arguments:
         return _of_text(given, values or {}, parse)
-    if values:
+    for name in values or ():
         raise UsageError(
-            f"unexpected keyword argument `{next(iter(values))}`: only the variables of a text have values"
+            f"unexpected keyword `{name}`: only variables of a text without arguments have values"
         )
     term = _of_data(given, arguments)
     if parse is not parse_term and functor_of(term) is None:
@@ -103,33 +100,27 @@ def _of_text(written: str, values: Mapping[str, object], parse: Callable[[str], 
     term = lower(parse(written), names.__getitem__)
     for name, value in values.items():
         if name not in names:
-            variable = name.capitalize()
-            otherwise = (
-                f"pass arguments by position, or write `{variable}` in the text and pass {variable}=..."
-            )
-            raise UsageError(
-                f"`{written}` has no variable `{name}`\n  = help: {suggestion(variable, names, otherwise)}"
-            )
-        names.pop(name).ref = value_term(value)
+            wanted = name.capitalize()
+            otherwise = f"pass arguments by position, or write `{wanted}` in the text and pass {wanted}=..."
+            help = suggestion(wanted, names, otherwise)
+            raise UsageError(f"`{written}` has no variable `{name}`\n  = help: {help}")
+        names.pop(name).ref = _value(value)
     term = resolve(term)
     return Given(term, text(term) if values else written, names)
 
 
 def _of_data(given: object, arguments: Sequence[object]) -> Term:
-    if isinstance(given, LiteralText) and not arguments:
-        return rename(given._term)
     if type(given) is tuple and given and not arguments:
         given, *arguments = given
-        if not arguments and isinstance(given, str):
-            return symbol_of(given, 0)
+        given = given if arguments else Atom(given)
     if not arguments:
-        return value_term(given)
+        return rename(given.term) if isinstance(given, LiteralText) else _value(given)
     if not _is_name(given):
         raise UsageError(
             f"expected a name before the arguments, found `{given}`\n"
             "  = help: to give values to the variables of a text, name them: X=..."
         )
-    return (symbol_of(str(given), len(arguments)), *map(value_term, arguments))
+    return (symbol_of(str(given), len(arguments)), *map(_value, arguments))
 
 
 def _is_name(given: object) -> bool:
@@ -137,26 +128,18 @@ def _is_name(given: object) -> bool:
     return isinstance(given, Atom) or (type(given) is str and symbol_of(given, 1).name[0] != "'")
 
 
-def value_term(value: object) -> Term:
-    """Return the term of a value; a text is a string. Lists may contain literals, like contents of messages.
-
-    Raises:
-        ValueError: it contains itself, or is nested deeper than 200 levels.
-    """
-    if isinstance(value, Literal):
-        return term_of(value)
+def _value(value: object) -> Term:
+    """Return the term of a value. Lists may contain literals, like contents of messages."""
     if type(value) is list and any(isinstance(each, Literal) for each in value):
-        return make_list(map(value_term, value))
-    return to_term(plain(value), UNKEPT)
+        return make_list(map(_value, value))
+    return term_of(value if isinstance(value, Literal) else plain(value))
 
 
-def by_position(
-    given: object, arguments: tuple[object, ...], name: str, default: T
-) -> tuple[tuple[object, ...], T]:
-    """Return the arguments of *given*, and an option that older programs pass by position.
+# Before names took arguments, positions had other meanings. A text that is not a name shows that they are meant.
 
-    Before names took arguments, the only positional argument after the text was this option.
-    """
+
+def by_position(given: object, arguments: tuple[object, ...], name: str, default: T) -> tuple[Any, T]:
+    """Return the arguments of *given*, and the value of an option that older programs pass by position."""
     if len(arguments) != 1 or _is_name(given):
         return arguments, default
     warnings.warn(f"pass {name} by keyword: {name}=...", DeprecationWarning, stacklevel=3)
@@ -167,5 +150,5 @@ def each_given(given: object, arguments: tuple[object, ...], values: Mapping[str
     """Return the literal, or the several ones that older programs pass in one call."""
     if not arguments or _is_name(given):
         return [read_given(given, arguments, values)]
-    warnings.warn("give one literal per call", DeprecationWarning, stacklevel=4)
+    warnings.warn("give one literal per call", DeprecationWarning, stacklevel=3)
     return [read_given(each, (), values) for each in (given, *arguments)]

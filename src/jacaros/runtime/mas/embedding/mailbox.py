@@ -75,24 +75,17 @@ class Mailbox(Arrivals[Message]):
     ) -> None:
         """Send a message to an agent.
 
-        ::
-
-            me.send("bob", "achieve", "fetch(ball)")
-            me.send("bob", "achieve", "fetch", "Ann, O'Hara")
-            me.send("bob", "tell", "Content", Content=message.content)  # whatever it is
-
         Args:
             receiver: name of the agent.
             performative: ``tell``, ``achieve``, ``askOne``, ``signal`` …
-            content: a term of the language as text; a `Literal`; or a plain value (see `jacaros.artifacts.env.values`).
-            arguments: plain values, if the content is a name.
+            content, arguments, values: as for `RunningAgent.add_belief`, but the text is any term, and the content can be
+                any plain value. ``"Content", Content=value`` sends a string, too.
             reply_to: the message that this one answers.
-            values: plain values of variables in the text.
 
         Raises:
             UnknownAgent: no participant has this name.
             AslError: the text is not a term.
-            UsageError: arguments follow a text that is not a name, or a value has no variable.
+            UsageError: as for `RunningAgent.add_belief`.
         """
         arguments, reply_to = by_position(content, arguments, "reply_to", reply_to)
         said = read_given(content, arguments, values, parse_term).term
@@ -111,17 +104,14 @@ class Mailbox(Arrivals[Message]):
 
         Args:
             receiver: name of the agent.
-            literal: the question, such as ``battery(Level)``; or a literal as data.
-            arguments: plain values, if *literal* is a name.
+            literal, arguments, values: the question, such as ``battery(Level)``, as for `RunningAgent.answers`.
             timeout: time limit in seconds of the run's clock.
-            values: plain values of variables in the text.
 
         Returns:
-            Plain values by name of the variables that are not given a value; None if the agent does not know.
+            Plain values by name of the variables without a value; None if the agent does not know.
 
         Raises:
             UnknownAgent: no participant has this name.
-            UsageError: arguments follow a text that is not a name, or a value has no variable.
             TimeoutError: no answer arrived in time.
             RunEnded: the run ended first.
         """

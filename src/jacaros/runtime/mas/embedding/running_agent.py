@@ -4,8 +4,9 @@ Literals, goals and formulae are text or data, see `jacaros.runtime.mas.embeddin
 """
 
 import asyncio
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator
 from contextlib import closing
+from functools import partial
 from typing import Any
 
 from jacaros.agents.body.values import to_value
@@ -55,14 +56,8 @@ class OpenMind:
     def add_belief(self, literal: object, /, *arguments: object, **values: object) -> None:
         """Add a belief, as the agent's own note unless the literal names a source. The event is external.
 
-        ::
-
-            bob.add_belief("seen(cup)")
-            bob.add_belief("seen", "Ann, O'Hara")  # arguments are never parsed
-            bob.add_belief("seen(Who)[source(ann)]", Who="Ann, O'Hara")
-
         Args:
-            literal: text; or a `Structure`, `Atom`, `Literal`, dataclass, named tuple, or tuple of a name and arguments.
+            literal: text, or data: see `jacaros.runtime.mas.embedding.given`.
             arguments: plain values (see `jacaros.artifacts.env.values`), if *literal* is a name.
             values: plain values of variables in the text.
 
@@ -70,40 +65,31 @@ class OpenMind:
             AslError: the text is not a literal.
             UsageError: arguments follow a text that is not a name, or a value has no variable.
         """
-        self._change(belief_update.tell, literal, arguments, values)
+        self._change(belief_update.tell, each_given(literal, arguments, values))
 
     def remove_belief(self, literal: object, /, *arguments: object, **values: object) -> None:
         """Remove the agent's own note (or that of the named source) that matches first. Arguments: see `add_belief`."""
-        self._change(belief_update.untell, literal, arguments, values)
+        self._change(belief_update.untell, each_given(literal, arguments, values))
 
     def replace_belief(self, literal: object, /, *arguments: object, **values: object) -> None:
         """Replace the agent's own note with the same functor, as ``-+b`` does. Arguments: see `add_belief`."""
-        self._change(_replace, literal, arguments, values)
+        self._change(_replace, [read_given(literal, arguments, values)])
 
     def post_goal(self, goal: object, /, *arguments: object, **values: object) -> None:
         """Add a goal, with an intention of its own. Arguments: see `add_belief`."""
-        self._change(Mind.post_goal, goal, arguments, values)
+        self._change(Mind.post_goal, [read_given(goal, arguments, values)])
 
     def drop_goal(self, goal: object, /, *arguments: object, **values: object) -> bool:
-        """Drop the intentions and events of a goal, as ``.drop_desire`` does. Return whether there were any.
-
-        Arguments: see `add_belief`.
-        """
-        term = read_given(goal, arguments, values).term
-        found = bool(goals.intentions_for(self.mind, term) or goals.goal_events(self.mind, term))
+        """Drop the intentions and events of a goal, as ``.drop_desire`` does; return whether there were any."""
+        given = read_given(goal, arguments, values)
+        found = goals.intentions_for(self.mind, given.term) or goals.goal_events(self.mind, given.term)
         if found:
-            self._change(goals.drop_desire, goal, arguments, values)
-        return found
+            self._change(goals.drop_desire, [given])
+        return bool(found)
 
-    def _change(
-        self,
-        change: Callable[[Mind, Term], object],
-        given: object,
-        arguments: tuple[object, ...],
-        values: Mapping[str, object],
-    ) -> None:
-        """Change the mind by a literal; before its next step if it has its turn now."""
-        mind, literals = self.mind, each_given(given, arguments, values)
+    def _change(self, change: Callable[[Mind, Term], object], literals: list[Given]) -> None:
+        """Change the mind by each literal; before its next step if it has its turn now."""
+        mind = self.mind
 
         def make(_: object = None) -> None:
             for each in literals:
@@ -119,24 +105,21 @@ class OpenMind:
         """Add a percept that lasts: a belief with ``source(percept)``. Arguments: see `add_belief`.
 
         Raises:
-            AslError: the text is not a literal.
             ValueError: the literal has variables.
         """
-        self._perceive("add", literal, arguments, values)
+        self._perceive("add", each_given(literal, arguments, values))
 
     def perceive_no_more(self, literal: object, /, *arguments: object, **values: object) -> None:
         """Remove a percept that was added by `perceive`, written in the same way."""
-        self._perceive("remove", literal, arguments, values)
+        self._perceive("remove", each_given(literal, arguments, values))
 
     def signal(self, literal: object, /, *arguments: object, **values: object) -> None:
         """Add a percept that does not last: an event without a belief. Arguments: see `add_belief`."""
-        self._perceive("signal", literal, arguments, values)
+        self._perceive("signal", each_given(literal, arguments, values))
 
-    def _perceive(
-        self, kind: str, given: object, arguments: tuple[object, ...], values: Mapping[str, object]
-    ) -> None:
+    def _perceive(self, kind: str, literals: list[Given]) -> None:
         percepts = []
-        for each in each_given(given, arguments, values):
+        for each in literals:
             if not is_ground(each.term):
                 raise ValueError(f"a percept must be ground: {each.text}")
             annotations = annotation_set((*annotations_of(each.term), SOURCE_PERCEPT))
@@ -146,30 +129,20 @@ class OpenMind:
     # ---- queries
 
     def answers(self, formula: object, /, *arguments: object, **values: object) -> list[dict[str, Any]]:
-        """Return all answers of a formula: plain values by name of its variables.
-
-        ::
-
-            bob.answers("battery(L) & L < Limit", Limit=20)
-            bob.answers("seen", "Ann, O'Hara")  # [{}] if bob believes it
-
-        Variables that are given a value are not among the results.
+        """Return all answers of a formula: plain values by name of the variables without a value.
 
         Args:
-            formula: text; or a literal as for `add_belief`. An argument None matches anything.
+            formula: text (``battery(L) & L < Limit``), or a literal as for `add_belief`; None matches anything.
             arguments, values: as for `add_belief`.
 
         Raises:
             AslError: the text is not a formula.
-            UsageError: arguments follow a text that is not a name, or a value has no variable.
+            UsageError: as for `add_belief`.
         """
-        return list(self._answers(formula, arguments, values))
+        return list(self._answers(read_given(formula, arguments, values, parse_formula)))
 
-    def _answers(
-        self, formula: object, arguments: tuple[object, ...], values: Mapping[str, object]
-    ) -> Generator[dict[str, Any], None, None]:
+    def _answers(self, asked: Given) -> Generator[dict[str, Any], None, None]:
         mind = self.mind
-        asked = read_given(formula, arguments, values, parse_formula)
         mark = len(mind.trail)
         try:
             yield from (values_of(asked.unknown) for _ in mind.context.answers(asked.term))
@@ -178,7 +151,10 @@ class OpenMind:
 
     def ask(self, formula: object, /, *arguments: object, **values: object) -> dict[str, Any] | None:
         """Return the first answer of a formula, or None if it does not hold. Arguments: see `answers`."""
-        with closing(self._answers(formula, arguments, values)) as found:
+        return self._first(read_given(formula, arguments, values, parse_formula))
+
+    def _first(self, asked: Given) -> dict[str, Any] | None:
+        with closing(self._answers(asked)) as found:
             return next(found, None)
 
     def believes(self, formula: object, /, *arguments: object, **values: object) -> bool:
@@ -300,11 +276,7 @@ class RunningAgent(OpenMind):
     def achieve(self, goal: object, /, *arguments: object, **values: object) -> "Goal":
         """Give it a goal, with an intention of its own. Await the returned goal to wait until it is achieved.
 
-        Arguments: see `add_belief`. ``achieve("check_in", name)`` passes *name* as a string, whatever it contains.
-
-        Raises:
-            AslError: the text is not a literal.
-            UsageError: arguments follow a text that is not a name, or a value has no variable.
+        Arguments and errors: see `add_belief`. ``achieve("check_in", name)`` never parses *name*.
         """
         return Goal(read_given(goal, arguments, values), self.mind, self._waits, lambda: self.ended)
 
@@ -324,20 +296,19 @@ class RunningAgent(OpenMind):
 
         Raises:
             AslError: the text is not a formula.
-            UsageError: arguments follow a text that is not a name, or a value has no variable.
             TimeoutError: it did not hold in time. The text shows related beliefs.
             AgentEnded: the agent ended first.
             RunEnded: the run ended first.
         """
         mind = self.mind
         arguments, timeout = by_position(formula, arguments, "timeout", timeout)
-        if not mind.running and (found := self.ask(formula, *arguments, **values)) is not None:
+        asked = read_given(formula, arguments, values, parse_formula)
+        if not mind.running and (found := self._first(asked)) is not None:
             return found
-        awaited = _Awaited(mind, read_given(formula, arguments, values, parse_formula))
+        awaited = _Awaited(mind, asked)
         try:
-            return await self._waits.wait(
-                awaited.future, lambda: self._does_not_hold(awaited.asked), timeout, self.name
-            )
+            missing = partial(self._does_not_hold, asked)
+            return await self._waits.wait(awaited.future, missing, timeout, self.name)
         finally:
             awaited.forget()
 
@@ -379,16 +350,16 @@ class _Awaited:
 
     def __init__(self, mind: Mind, asked: Given) -> None:
         self.future: asyncio.Future[dict[str, Any]] = asyncio.get_running_loop().create_future()
-        self.asked = asked
+        self._asked = asked
         self.forget = WatchedCondition(mind, asked.term, self._ended).forget
 
     def _ended(self, fault: Exception | None) -> None:
         if self.future.done():
             return
         if fault is None:
-            self.future.set_result(values_of(self.asked.unknown))
+            self.future.set_result(values_of(self._asked.unknown))
         else:
-            self.future.set_exception(UsageError(f"{self.asked.text} cannot be evaluated: {told(fault)}"))
+            self.future.set_exception(UsageError(f"{self._asked.text} cannot be evaluated: {told(fault)}"))
 
 
 class Goal(PursuedGoal):

@@ -202,7 +202,7 @@ def _ring() -> list[object]:
             UsageError,
             r"no variable `parcel`\n.*write `Parcel` in the text",
         ),
-        (lambda a: a.achieve("p", 1, X=2), UsageError, "unexpected keyword argument `X`"),
+        (lambda a: a.achieve("p", 1, X=2), UsageError, "unexpected keyword `X`"),
         (lambda a: a.achieve(3), UsageError, "expected a literal, found 3"),
         (lambda a: a.achieve(["p"]), UsageError, r'expected a literal, found \["p"\]'),
         (lambda a: a.ask(()), UsageError, r"expected a literal, found \[\]"),
