@@ -1,0 +1,218 @@
+"""The way between a run and a door that serves it in a thread of its own.
+
+A door has its own loop, so that slow clients, and real time, do not disturb a run, whose clock may be virtual. Requests
+cross to the loop of the run through a `Crossing`, events cross back through an `Outbox`.
+"""
+
+import asyncio
+import threading
+import time
+from collections import deque
+from collections.abc import Awaitable, Callable, Coroutine, Hashable
+from concurrent.futures import Future
+from contextlib import suppress
+from functools import partial
+from typing import Any, Generic, TypeVar
+
+from jacaros.serving.callers import RequestError
+
+T = TypeVar("T")
+M = TypeVar("M")
+SLICE = 0.005
+"""Seconds of requests that the loop of the run executes before it gives agents their turns."""
+PATIENCE = 30.0
+"""Seconds that a request waits for the run, which may be in the middle of a long step."""
+MOST_KEPT = 5_000
+"""Maximum number of messages that wait for one reader."""
+
+
+class Crossing:
+    """Executes requests of a door on the loop of the run.
+
+    Args:
+        loop: the loop of the run.
+    """
+
+    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
+        self._loop = loop
+        self._requests: deque[Callable[[], None]] = deque()
+        self._lock = threading.Lock()
+        self._is_scheduled = False
+
+    async def call(self, function: Callable[..., T], *args: Any) -> T:
+        """Call a function on the loop of the run. Return its result, or raise its exception.
+
+        Raises:
+            RequestError: the run does not respond, or has ended. The function is then not called.
+        """
+        done: Future[T] = Future()
+        self._post(partial(_call, function, args, done))
+        try:
+            async with asyncio.timeout(PATIENCE) as limit:
+                return await asyncio.wrap_future(done)
+        except TimeoutError:
+            if not limit.expired():
+                raise  # the function has raised it
+            message = f"the run has not responded for {PATIENCE:g} s"
+            raise RequestError("unresponsive", message) from None
+
+    async def wait(self, function: Callable[..., Coroutine[Any, Any, T]], *args: Any) -> T:
+        """Await a coroutine function on the loop of the run. Return its result, or raise its exception."""
+        done: Future[T] = Future()
+
+        def start() -> None:
+            task = self._loop.create_task(function(*args))
+            task.add_done_callback(partial(_pass_on, done))
+            done.add_done_callback(lambda _: self._stop(task))
+
+        self._post(start)
+        return await asyncio.wrap_future(done)
+
+    def _stop(self, task: "asyncio.Task[Any]") -> None:
+        """Cancel a task whose result the door no longer wants."""
+        if not task.done() and not self._loop.is_closed():
+            self._loop.call_soon_threadsafe(task.cancel)
+
+    def _post(self, request: Callable[[], None]) -> None:
+        with self._lock:
+            self._requests.append(request)
+            if self._is_scheduled:
+                return
+            self._is_scheduled = True
+        try:
+            self._loop.call_soon_threadsafe(self._execute)
+        except RuntimeError:  # the loop is closed
+            raise RequestError("ended", "the run has ended") from None
+
+    def _execute(self) -> None:
+        until = time.perf_counter() + SLICE
+        while True:
+            with self._lock:
+                if not self._requests:
+                    self._is_scheduled = False
+                    return
+                request = self._requests.popleft()
+            request()
+            if time.perf_counter() > until:
+                self._loop.call_soon(self._execute)
+                return
+
+
+def _call(function: Callable[..., T], args: tuple[Any, ...], done: "Future[T]") -> None:
+    if not done.set_running_or_notify_cancel():
+        return  # the door no longer wants it
+    try:
+        done.set_result(function(*args))
+    except Exception as error:
+        done.set_exception(error)
+
+
+def _pass_on(done: "Future[T]", task: "asyncio.Task[T]") -> None:
+    if done.cancelled():
+        return
+    if task.cancelled():
+        done.set_exception(RequestError("ended", "the run has ended"))
+    elif (error := task.exception()) is not None:
+        done.set_exception(error)
+    else:
+        done.set_result(task.result())
+
+
+class Lagging(Exception):
+    """Raised for a reader that has left more than `MOST_KEPT` messages unread."""
+
+
+class Outbox(Generic[M]):
+    """Messages for one reader, in order. Any thread may add messages; memory is bounded.
+
+    Args:
+        loop: the loop of the reader.
+        most: maximum number of messages.
+    """
+
+    def __init__(self, loop: asyncio.AbstractEventLoop, most: int = MOST_KEPT) -> None:
+        self._loop, self._most = loop, most
+        self._messages: dict[Hashable, M] = {}
+        self._number = 0
+        self._lock = threading.Lock()
+        self._arrived = asyncio.Event()
+        self._lags = False
+
+    def put(self, message: M, subject: Hashable = None) -> None:
+        """Add a message. Of unread messages with the same subject, only the newest is kept."""
+        with self._lock:
+            if self._lags:
+                return
+            is_first = not self._messages
+            self._number += 1
+            key = self._number if subject is None else subject
+            self._messages.pop(key, None)
+            self._messages[key] = message
+            if len(self._messages) > self._most:
+                self._lags = True
+                self._messages.clear()
+        if is_first and not self._loop.is_closed():
+            self._loop.call_soon_threadsafe(self._arrived.set)
+
+    async def take(self) -> list[M]:
+        """Wait for messages. Return all unread ones.
+
+        Raises:
+            Lagging: there were too many; the reader must be disconnected.
+        """
+        await self._arrived.wait()
+        with self._lock:
+            self._arrived.clear()
+            if self._lags:
+                raise Lagging
+            found = list(self._messages.values())
+            self._messages.clear()
+        return found
+
+
+Main = Callable[[Crossing], Awaitable[None]]
+"""What a door does on its loop, until it is cancelled."""
+
+
+class DoorThread:
+    """A thread with a loop of its own.
+
+    Args:
+        name: name of the thread.
+        main: what it does.
+        failed: called in the thread with the exception that ended *main*.
+    """
+
+    def __init__(self, name: str, main: Main, failed: Callable[[Exception], object]) -> None:
+        self._main, self._failed = main, failed
+        self._crossing = Crossing(asyncio.get_running_loop())
+        self._ended: Future[None] = Future()
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._task: asyncio.Task[Any] | None = None
+        self._thread = threading.Thread(target=self._run, name=name, daemon=True)
+        self._stops = threading.Event()
+        self._thread.start()
+
+    async def close(self) -> None:
+        """Cancel what it does, and wait for its end."""
+        self._stops.set()
+        if self._loop is not None and self._task is not None and not self._ended.done():
+            with suppress(RuntimeError):  # it has just ended
+                self._loop.call_soon_threadsafe(self._task.cancel)
+        await asyncio.wrap_future(self._ended)
+
+    def _run(self) -> None:
+        try:
+            asyncio.run(self._serve())
+        except asyncio.CancelledError:
+            pass
+        except Exception as error:
+            self._failed(error)
+        finally:
+            self._ended.set_result(None)
+
+    async def _serve(self) -> None:
+        self._loop, self._task = asyncio.get_running_loop(), asyncio.current_task()
+        if self._stops.is_set():
+            return
+        await self._main(self._crossing)
