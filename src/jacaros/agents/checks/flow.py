@@ -126,25 +126,58 @@ class ProgramFlow:
     texts: list[nodes.String] = field(default_factory=list)
     files: set[str] = field(default_factory=set)
 
+    def add(self, other: "ProgramFlow") -> None:
+        """Add the flow of a further clause."""
+        for own, added in ((self.adders, other.adders), (self.told, other.told)):
+            for name, adders in added.items():
+                own.setdefault(name, []).extend(adders)
+        self.readers += other.readers
+        self.actions += other.actions
+        self.texts += other.texts
+        self.mentioned |= other.mentioned
+        self.said |= other.said
+        self.spelled |= other.spelled
+        self.files |= other.files
+        self.is_open |= other.is_open
+        self.tells_unseen |= other.tells_unseen
+
 
 def flow_of(
     program: nodes.Program,
     actions: Mapping[str, Declaration],
     observables: Mapping[str, Sequence[Adder]] | None = None,
 ) -> ProgramFlow:
-    """Return the flow of a program.
+    """Return the flow of a program; see `flows_of`."""
+    return flows_of([program], actions, observables)[0]
+
+
+def flows_of(
+    programs: Iterable[nodes.Program],
+    actions: Mapping[str, Declaration],
+    observables: Mapping[str, Sequence[Adder]] | None = None,
+) -> list[ProgramFlow]:
+    """Return the flows of programs. A clause of a library that they share is looked at once.
 
     Args:
-        program: the program with its includes.
+        programs: the programs with their includes.
         actions: the internal actions by name.
         observables: properties and signals whose values variables may have.
     """
-    collector = _Collector(actions, observables or {})
-    for belief in program.beliefs:
-        collector.collect(belief, is_belief=True)
-    for clause in (*program.goals, *program.plans):
-        collector.collect(clause)
-    return collector.found
+    collector, flows = _Collector(actions, observables or {}), []
+    shared: dict[int, ProgramFlow] = {}
+    for program in programs:
+        flow = ProgramFlow()
+        facts = set(map(id, program.beliefs))
+        for clause in (*program.beliefs, *program.goals, *program.plans):
+            if is_own(clause):
+                collector.collect(flow, clause, id(clause) in facts)
+                continue
+            if id(clause) not in shared:
+                part = shared[id(clause)] = ProgramFlow()
+                collector.collect(part, clause, id(clause) in facts)
+            flow.add(shared[id(clause)])
+        flows.append(flow)
+    return flows
 
 
 def key_of(literal: nodes.Literal) -> Key:
@@ -321,9 +354,9 @@ class _Collector:
         self._variables: dict[str, Value] | None = None
         self._stack: list[tuple[nodes.Node, _At]] = []
 
-    def collect(self, clause: nodes.Node, is_belief: bool = False) -> None:
-        """Collect from a plan, a rule, an initial belief or an initial goal."""
-        self._clause, self._variables = clause, None
+    def collect(self, found: ProgramFlow, clause: nodes.Node, is_belief: bool) -> None:
+        """Collect what a plan, a rule, an initial belief or an initial goal adds to a flow."""
+        self.found, self._clause, self._variables = found, clause, None
         if clause.span is not None and is_own(clause):
             self.found.files.add(clause.span.file.name)
         if not isinstance(clause, nodes.Literal):

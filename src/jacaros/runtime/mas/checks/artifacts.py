@@ -20,7 +20,7 @@ from jacaros.agents.checks.goals import KnownActions
 from jacaros.agents.checks.handlers import Key, handled_in, with_mark
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic
-from jacaros.agents.language.nodes import UNDECLARED, walk
+from jacaros.agents.language.nodes import UNDECLARED, nodes_in, walk
 from jacaros.agents.mind.actions.internal_action import STANDARD
 from jacaros.artifacts.env.arbiter import local_name, read_uses
 from jacaros.artifacts.env.environment import Environment
@@ -304,13 +304,18 @@ def _named_types(program: nodes.Program) -> tuple[list[_NamedType], bool]:
 
     A type may be the argument of a goal whose plan creates the artifact.
     """
-    uses = list(_uses(program))
-    posted = {_key(literal) for literal, plan in uses if not _is_of_library(plan)}
-    certain = not any(literal.functor in _OPEN_WORLD for literal, _ in uses)
+    uses: dict[Key, list[tuple[nodes.Literal, nodes.Plan | None]]] = {}
+    posted: set[Key] = set()
+    for plan, literals in _uses(program):
+        for literal in literals:
+            uses.setdefault(_key(literal), []).append((literal, plan))
+        if not _is_of_library(plan):
+            posted.update(map(_key, literals))
+    certain = not any(name in _OPEN_WORLD for name, _ in uses)
     named: list[_NamedType] = []
     places = list(_MAKING)
     for place in places:  # the list grows while it is iterated
-        found = [each for each in uses if _key(each[0]) == (place.functor, place.arity)]
+        found = uses.get((place.functor, place.arity), [])
         certain &= bool(found) or place.of_library  # other goals come from outside
         for literal, plan in found:
             wanted = literal.arguments[place.argument]
@@ -333,18 +338,16 @@ def type_of(wanted: nodes.Term) -> str | None:
     return wanted.functor if isinstance(wanted, nodes.Literal) and not wanted.arguments else None
 
 
-def _key(literal: nodes.Literal | nodes.Variable) -> tuple[str, int]:
+def _key(literal: nodes.Literal | nodes.Variable) -> Key:
     return (literal.functor, len(literal.arguments)) if isinstance(literal, nodes.Literal) else ("", 0)
 
 
-def _uses(program: nodes.Program) -> Iterator[tuple[nodes.Literal, nodes.Plan | None]]:
-    """Return all literals of a program except triggers of plans, with their plans."""
+def _uses(program: nodes.Program) -> Iterator[tuple[nodes.Plan | None, list[nodes.Literal]]]:
+    """Yield the literals of each plan except its trigger, and those of beliefs and goals without a plan."""
     for plan, found in program.in_plans:
         head = set(map(id, walk(plan.label, plan.trigger)))
-        yield from ((node, plan) for node in found.of(nodes.Literal) if id(node) not in head)
-    for node in walk(program.goals, program.beliefs):
-        if isinstance(node, nodes.Literal):
-            yield node, None
+        yield plan, [each for each in found.of(nodes.Literal) if id(each) not in head]
+    yield None, list(nodes_in(nodes.Literal, (program.goals, program.beliefs)))
 
 
 def _given_by_goal(wanted: nodes.Term, plan: nodes.Plan | None) -> _Place | None:

@@ -22,7 +22,7 @@ from jacaros.agents.checks.beliefs import (
     told_texts,
     unmet_goals,
 )
-from jacaros.agents.checks.flow import ANY, Adder, Flow, Key, ProgramFlow, Reader, flow_of, is_own, source_of
+from jacaros.agents.checks.flow import ANY, Adder, Flow, Key, ProgramFlow, Reader, flows_of, is_own, source_of
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic, problem
 from jacaros.agents.language.lowering import format_term
@@ -118,7 +118,7 @@ class _BeliefCheck:
         is_known = all(each.types is not None for each in wholes)
         types = list(dict.fromkeys(kind for each in wholes for kind in each.types or ()))
         observables = around.observables.of(types) if is_known else None
-        flows = [flow_of(program, STANDARD, observables) for program in programs]
+        flows = flows_of(programs, STANDARD, observables)
         self._flow = Flow(flows, observables or {})
         self.flows = flows[: len(wholes[0].programs)]
         self._knows_artifacts = observables is not None

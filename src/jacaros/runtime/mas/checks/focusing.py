@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence, Set
 from typing import TYPE_CHECKING, Final
 
-from jacaros.agents.checks.flow import Reader, flow_of, is_own
+from jacaros.agents.checks.flow import Reader, flows_of, is_own
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.agents.language.nodes import ByKind
@@ -137,15 +137,15 @@ class _Focus:
             seen.append({name for kind in kinds for name in self._properties(kind) or ()})
         if all(each >= owners.keys() for each in seen):
             return
-        flows = [(agent, program, flow_of(program, STANDARD)) for agent, program in self._programs]
-        if any(flow.is_open or flow.tells_unseen for _, _, flow in flows):
+        flows = flows_of([program for _, program in self._programs], STANDARD)
+        if any(flow.is_open or flow.tells_unseen for flow in flows):
             return
-        added = {name for _, _, flow in flows for name in (*flow.adders, *flow.told)}
+        added = {name for flow in flows for name in (*flow.adders, *flow.told)}
         focused: dict[str, set[str]] = {}  # the properties that agents with a file focus
-        for (_, _, flow), own in zip(flows, seen, strict=True):
+        for flow, own in zip(flows, seen, strict=True):
             for file in flow.files:
                 focused.setdefault(file, set()).update(own)
-        for agent, _, flow in flows:
+        for (agent, _), flow in zip(self._programs, flows, strict=True):
             for reader in _first(flow.readers):
                 name = reader.key[0]
                 file = reader.literal.span.file.name if reader.literal.span is not None else ""
