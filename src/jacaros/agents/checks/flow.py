@@ -128,18 +128,15 @@ class ProgramFlow:
 
     def add(self, other: "ProgramFlow") -> None:
         """Add the flow of a further clause."""
-        for own, added in ((self.adders, other.adders), (self.told, other.told)):
-            for name, adders in added.items():
-                own.setdefault(name, []).extend(adders)
-        self.readers += other.readers
-        self.actions += other.actions
-        self.texts += other.texts
-        self.mentioned |= other.mentioned
-        self.said |= other.said
-        self.spelled |= other.spelled
-        self.files |= other.files
-        self.is_open |= other.is_open
-        self.tells_unseen |= other.tells_unseen
+        for name, added in vars(other).items():
+            own = getattr(self, name)
+            if isinstance(added, dict):
+                for belief, adders in added.items():
+                    own.setdefault(belief, []).extend(adders)
+            elif isinstance(added, list):
+                own += added
+            else:
+                setattr(self, name, own | added)
 
 
 def flow_of(

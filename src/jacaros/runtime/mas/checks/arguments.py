@@ -3,9 +3,9 @@
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from jacaros.agents.checks.formulas import in_order
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic
+from jacaros.agents.language.nodes import walk
 from jacaros.artifacts.env.values import Out
 from jacaros.artifacts.kernel.acceptance import Unsuitable
 from jacaros.artifacts.kernel.declaration import Parameter
@@ -18,7 +18,7 @@ def unbound_arguments(plans: Iterable[nodes.Plan], types: "Sequence[type[Artifac
     """Return warnings about variables without a value as inputs of operations that only artifacts of *types* have."""
     for plan in plans:
         met: set[str] = set()
-        for node, _ in in_order(plan):
+        for node in walk(plan):
             if isinstance(node, nodes.Variable):
                 met.add(node.name)
             elif isinstance(node, nodes.ExternalAction) and isinstance(node.action, nodes.Literal):

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from jacaros.agents.body.body import keys
 from jacaros.agents.checks.annotations import needs_of
+from jacaros.agents.checks.flow import is_own
 from jacaros.agents.checks.goals import KnownActions
 from jacaros.agents.checks.handlers import Key, handled_in, with_mark
 from jacaros.agents.language import nodes
@@ -145,8 +146,7 @@ class Offered:
 
     def lacks(self, action: nodes.Literal) -> bool:
         """Return whether no artifact offers an action of a file of the user."""
-        own = action.span is not None and not action.span.file.name.startswith("$")
-        return own and not self.has(action.functor, len(action.arguments))
+        return is_own(action) and not self.has(action.functor, len(action.arguments))
 
     def check(self, action: nodes.Literal, handled: Set[Key]) -> Iterator[Diagnostic]:
         """Return a warning if no artifact offers *action*. *handled* are the goals that its program has plans for."""
@@ -180,24 +180,25 @@ def lacks_actions(programs: Sequence[nodes.Program], types: "Sequence[type[Artif
     return any(offered.lacks(each) for each in actions if isinstance(each, nodes.Literal))
 
 
+def shipped_with(name: str) -> list[Path]:
+    """Return the mappings of the package that have a property, signal or operation of this name."""
+    from jacaros.robots.mapping.file import SHIPPED  # here: few programs need them
+
+    # Reading YAML is slow: the name is searched in the text.
+    entry = re.compile(rf"^ +{re.escape(name)}:", re.MULTILINE)
+    return [path for path in sorted(SHIPPED.glob("*.yaml")) if entry.search(path.read_text(encoding="utf-8"))]
+
+
 def _shipped_with(name: str, arity: int) -> list[str]:
     """Return the mappings of the package that have an operation."""
-    from jacaros.robots.mapping.file import (  # here: few programs need them
-        SHIPPED,
-        load_mapping,
-        shipped_mappings,
-    )
+    from jacaros.robots.mapping.file import load_mapping  # here: few programs need it
 
-    # Reading YAML is slow: only files with the name are read.
-    files = [
-        each for each in shipped_mappings() if f" {name}:" in (SHIPPED / each).read_text(encoding="utf-8")
-    ]
     return [
-        each
-        for each in files
+        path.name
+        for path in shipped_with(name)
         if any(
             (part.name, len(part.parameters) + len(part.outputs)) == (name, arity)
-            for artifact in load_mapping(SHIPPED / each).artifacts.values()
+            for artifact in load_mapping(path).artifacts.values()
             for part in artifact.operations
         )
     ]
@@ -364,4 +365,4 @@ def _given_by_goal(wanted: nodes.Term, plan: nodes.Plan | None) -> _Place | None
 
 
 def _is_of_library(plan: nodes.Plan | None) -> bool:
-    return plan is not None and plan.span is not None and plan.span.file.name.startswith("$")
+    return plan is not None and plan.span is not None and not is_own(plan)

@@ -30,6 +30,7 @@ from jacaros.agents.language.nodes import parts_of
 from jacaros.agents.mind.actions.internal_action import STANDARD
 from jacaros.runtime.files import texts as file_texts
 from jacaros.runtime.files.texts import close_matches, did_you_mean, file_bytes
+from jacaros.runtime.mas.checks.artifacts import lacks_actions, shipped_with
 from jacaros.runtime.mas.checks.observables import Observables, parameter_units
 
 if TYPE_CHECKING:
@@ -110,8 +111,6 @@ class _BeliefCheck:
     """The findings about the first one of some projects that run the same programs."""
 
     def __init__(self, wholes: Sequence[Whole], around: Surroundings) -> None:
-        from jacaros.runtime.mas.checks.artifacts import lacks_actions
-
         self._is_lone = around.is_lone and len(wholes) == 1
         self._is_partial = around.is_partial
         programs = [program for each in wholes for program in each.programs]
@@ -192,7 +191,7 @@ class _BeliefCheck:
             yield problem(MISSPELT, message, literal.span, did_you_mean([min(similar)]))
         elif self._is_closed and not reader.denied and reader.key not in self._reported:
             self._reported.add(reader.key)  # nothing is right about the other places either
-            shipped = _shipped_with(name)
+            shipped = next((path.name for path in shipped_with(name)), "")
             if self._is_lone and (shipped or _is_built_in(name)):
                 return  # it is run with that artifact
             private = [each for flow in self._flow.programs for each in flow.adders.get(name, ())]
@@ -300,14 +299,6 @@ def _to_be_told(adder: Adder) -> str:
     where = f"{literal.span.file.name}:{literal.span.line}" if literal and literal.span else "another agent"
     told = format_term(literal) if literal else ""
     return f"{where} adds it for its own agent only; to pass it on: `.send(NAME, tell, {told})`"
-
-
-def _shipped_with(name: str) -> str:
-    """Return the mapping of JaCaROS that has a property or signal; empty if none has it."""
-    from jacaros.robots.mapping.file import SHIPPED
-
-    entry = re.compile(rf"^ +{re.escape(name)}:", re.MULTILINE)
-    return next((path.name for path in sorted(SHIPPED.glob("*.yaml")) if entry.search(_read(path))), "")
 
 
 def _is_built_in(name: str) -> bool:
