@@ -2,7 +2,7 @@
 
 import json
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import msgspec
@@ -83,27 +83,28 @@ MAGIC = b"\x1f\x8b\x08"
 """First bytes of a member of a compressed file."""
 
 
-def unpacked(data: bytes, largest: int) -> tuple[bytes, bool]:
-    """Return the readable content of a compressed file, and whether a part of it is damaged.
+def unpacked(data: bytes, largest: int, damaged: Callable[[], None]) -> Iterator[bytes]:
+    """Yield the readable content of a compressed file, member by member.
 
     A truncated file is not damaged. The content of a damaged member is lost from about the damage on.
 
     Args:
         data: file content.
         largest: maximum number of bytes to decompress; the rest is skipped.
+        damaged: called once before the content of the first damaged member.
     """
-    found: list[bytes] = []
-    broken = False
+    is_whole = True
     left, at = largest, data.find(MAGIC)
     while at >= 0 and left > 0:
         content, end, is_damaged = _member(data, at, left)
-        found.append(content)
+        if is_damaged and is_whole:
+            is_whole = False
+            damaged()
+        yield (
+            content if end is not None else content + b"\n"
+        )  # the missing part begins in the middle of a line
         left -= len(content)
-        if end is None:
-            found.append(b"\n")  # the missing part begins in the middle of a line
-        broken = broken or is_damaged
         at = data.find(MAGIC, at + 1 if end is None else end)
-    return b"".join(found), broken
 
 
 def _member(data: bytes, start: int, largest: int) -> tuple[bytes, int | None, bool]:

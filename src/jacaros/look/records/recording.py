@@ -1,22 +1,25 @@
 """A recorded run in memory, read from a recorder's file."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Container, Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
 import msgspec
-from msgspec import Struct, ValidationError, convert
+from msgspec import Raw, Struct, ValidationError, convert
 
 from jacaros.look.records.line_format import MAGIC, unpacked
 from jacaros.look.records.records import (
+    EVENTS,
     VERSION,
     AnyLine,
-    Data,
     EventLine,
+    EventRecord,
     FiniteNumber,
     Frame,
+    RecordingLine,
     TextLine,
     WorldLine,
     decoded,
@@ -32,6 +35,8 @@ LARGEST_RATIO = 32
 
 _COLUMNS = len(RobotState._fields)
 _BEGINNING = '{"kind": '
+_PIECE = 1 << 20
+_DAMAGED = "{} is damaged: what can be read of it is shown"
 
 
 class _Robot(Struct):
@@ -50,7 +55,18 @@ class _Kind(Struct):
     kind: str
 
 
-_read_line = msgspec.json.Decoder(AnyLine).decode
+class _RawEvent(RecordingLine, tag="event", gc=False):
+    """An `EventLine` whose data are decoded later, by its kind."""
+
+    t: FiniteNumber
+    event: str
+    data: Raw
+
+
+_read_line = msgspec.json.Decoder(WorldLine | Frame | TextLine | _RawEvent).decode
+_read_data = msgspec.json.Decoder(dict[str, Any]).decode
+_DECODERS = {kind: msgspec.json.Decoder(each).decode for kind, each in EVENTS.items()}
+_STRUCTS = frozenset(each.kind for each in EventRecord.__subclasses__())
 _KINDS = ("world", "frame", "text", "event")
 
 
@@ -130,38 +146,60 @@ class Recording:
             OSError: the file cannot be read.
             JacarosError: the file is not a recording.
         """
-        recording, path = cls(), Path(path)
-        lines = _lines(path, recording.warnings)
-        first = _header_of(lines[0]) if lines else {}
+        recording = cls()
+        recording.events.extend(recording.streamed(path))
+        return recording
+
+    def streamed(
+        self, path: str | Path, without: Container[str] = (), is_plain: bool = True
+    ) -> Iterator[tuple[float, str, Any]]:
+        """Read a file as `read` does, and yield its events, which are not kept.
+
+        Args:
+            path: of the file.
+            without: kinds of events of which only the time is wanted: their data are None.
+            is_plain: whether data are dictionaries; otherwise, they are structs as far as `EventRecord` has them.
+        """
+        opened = _plain if is_plain else _typed
+        path = Path(path)
+        lines = _lines(path, self.warnings)
+        begin = next(lines, "")
+        first = _header_of(begin)
         if first.get("version", 1) > VERSION:
-            recording.warnings.append(
+            self.warnings.append(
                 f"{path} has version {first['version']}, which is newer than {VERSION}: unknown records are skipped"
             )
         part = first.get("part", 1)
         if part > 1 and older_part(path).is_file():
-            before = _lines(older_part(path), recording.warnings)
-            if before and _header_of(before[0]).get("part", 1) == part - 1:
-                recording._take_all(before, older_part(path))
-        recording._take_all(lines, path)
-        return recording
+            before = _lines(older_part(path), self.warnings)
+            older = next(before, "")
+            if _header_of(older).get("part", 1) == part - 1:
+                yield from self._take_all(chain([older], before), older_part(path), without, opened)
+        yield from self._take_all(chain([begin] if begin else (), lines), path, without, opened)
 
-    def _take_all(self, lines: list[str], path: Path) -> None:
-        """Take all lines out of a list: the memory of each is free once it is read."""
+    def _take_all(
+        self, lines: Iterator[str], path: Path, without: Container[str], opened: Callable[[str, Raw], Any]
+    ) -> Iterator[tuple[float, str, Any]]:
         described = damaged = False
-        last = len(lines)
-        lines.reverse()
-        for number in range(1, last + 1):
-            line = lines.pop()
+        line, number = next(lines, None), 0
+        while line is not None:
+            following, number = next(lines, None), number + 1
             try:
                 record = _record(line)
-                self._take(record)
-                described = described or isinstance(record, WorldLine)
+                if isinstance(record, (EventLine, _RawEvent)):
+                    is_wanted = record.event not in without
+                    data = self._data(record, opened) if is_wanted else None
+                    if data is not None or not is_wanted:
+                        yield record.t, record.event, data
+                else:
+                    self._take(record)
+                    described = described or isinstance(record, WorldLine)
             except (ValueError, RecursionError) as error:
-                cut_off = number == last or line.startswith(_BEGINNING)
-                if (cut_off and isinstance(error, json.JSONDecodeError)) or self.warnings:
-                    damaged = True
-                    continue
-                raise _not_a_recording(f"{path}:{number}", str(error)) from None
+                cut_off = following is None or line.startswith(_BEGINNING)
+                if not ((cut_off and isinstance(error, json.JSONDecodeError)) or self.warnings):
+                    raise _not_a_recording(f"{path}:{number}", str(error)) from None
+                damaged = True
+            line = following
         if not described:
             raise _not_a_recording(str(path), "no line of it describes a world")
         if damaged and not self.warnings:
@@ -177,19 +215,41 @@ class Recording:
                 self.frames.append(Frame(record.t, rows))
             case TextLine():
                 self.texts.append((record.t, record.agent, record.text))
-            case EventLine():
-                self._take_event(record.t, record.event, record.data)
 
-    def _take_event(self, t: float, kind: str, data: Data) -> None:
+    def _data(self, event: "EventLine | _RawEvent", opened: Callable[[str, Raw], Any]) -> Any:
+        """Return the data of an event; None if they are malformed."""
+        data = event.data
         try:
-            decoded(kind, data)
-            self.events.append((t, kind, dict(data)))
+            if isinstance(data, Raw):
+                try:
+                    return opened(event.event, data)
+                except ValidationError:
+                    raise
+                except ValueError:  # as in `_record`
+                    data = convert(json.loads(bytes(data)), dict[str, Any])
+            decoded(event.event, data)
+            return data
         except ValidationError as error:
+            if isinstance(data, Raw) and not bytes(data).startswith(b"{"):
+                raise
             if not self.warnings:
-                self.warnings.append(f"malformed events are skipped: `{kind}` at {t:g} s: {error}")
+                self.warnings.append(
+                    f"malformed events are skipped: `{event.event}` at {event.t:g} s: {error}"
+                )
+            return None
 
 
-def _record(line: str) -> AnyLine | None:
+def _plain(kind: str, data: Raw) -> dict[str, Any]:
+    if kind in _DECODERS:
+        _DECODERS[kind](data)
+    return _read_data(data)
+
+
+def _typed(kind: str, data: Raw) -> Any:
+    return _DECODERS[kind](data) if kind in _STRUCTS else _plain(kind, data)
+
+
+def _record(line: str) -> "AnyLine | _RawEvent | None":
     """Return the record of a line; None for one of an unknown kind.
 
     Raises:
@@ -197,7 +257,7 @@ def _record(line: str) -> AnyLine | None:
         JSONDecodeError: it is not JSON.
     """
     try:
-        return _read_line(line)
+        return _read_line(line)  # type: ignore[no-any-return]
     except ValidationError:
         if msgspec.json.decode(line, type=_Kind).kind in _KINDS:
             raise
@@ -219,28 +279,46 @@ def older_part(path: Path) -> Path:
     return path.with_name(f"{path.name}.1")
 
 
-def _lines(path: Path, warnings: list[str]) -> list[str]:
+def _lines(path: Path, warnings: list[str]) -> Iterator[str]:
+    """Yield the lines of a file, which need not fit into memory together: hours of a run are hundreds of megabytes."""
+    before, held = 0, []
+    for piece in _pieces(path, warnings):
+        begin, end, rest = piece.rpartition(b"\n")
+        if not end:
+            held.append(rest)
+            continue
+        try:
+            lines = _text(b"".join([*held, begin]), before).split("\n")
+        except UnicodeError as error:
+            raise _not_a_recording(str(path), str(error)) from None
+        before, held = before + len(lines), [rest]
+        yield from lines
+    # The last line may be truncated in the middle of a character.
+    if last := b"".join(held):
+        yield last.decode("utf-8", "replace")
+
+
+def _text(data: bytes, before: int) -> str:
+    try:
+        return text_of(data)
+    except UnicodeError:
+        return text_of(b"\n" * before + data)  # the error names the line of the file
+
+
+def _pieces(path: Path, warnings: list[str]) -> Iterator[bytes]:
     data = file_bytes(path, LARGEST_RECORDING)
-    if data.startswith(MAGIC):
-        largest = max(LARGEST, LARGEST_RATIO * len(data))
-        data, broken = unpacked(data, largest + 1)
-        if len(data) > largest:
+    if not data.startswith(MAGIC):
+        yield from (data[at : at + _PIECE] for at in range(0, len(data), _PIECE))
+        return
+    left = largest = max(LARGEST, LARGEST_RATIO * len(data))
+    for content in unpacked(data, largest + 1, lambda: warnings.append(_DAMAGED.format(path))):
+        left -= len(content)
+        if left < 0:
             raise JacarosError(
                 f"error: compressed content is larger than {largest >> 20} MiB: {printable(str(path))}\n"
                 f"  = help: if you trust the file, unpack it first: gzip -dc {printable(str(path))} > run.jsonl"
             )
-        if broken:
-            warnings.append(f"{path} is damaged: what can be read of it is shown")
-    end = data.rfind(b"\n") + 1
-    cut_off, data = data[end:], data[: max(0, end - 1)]
-    try:
-        text = text_of(data)
-    except UnicodeError as error:
-        raise _not_a_recording(str(path), str(error)) from None
-    del data  # hours of a run are hundreds of megabytes
-    lines = text.split("\n") if end else []
-    # The last line may be truncated in the middle of a character.
-    return [*lines, cut_off.decode("utf-8", "replace")] if cut_off else lines
+        yield content
 
 
 def _header_of(line: str) -> dict[str, Any]:

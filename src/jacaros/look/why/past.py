@@ -7,11 +7,15 @@ from typing import Any, NamedTuple, TypeVar
 from msgspec import ValidationError
 
 from jacaros.look.records import records
-from jacaros.look.records.records import Record, decoded
+from jacaros.look.records.records import Data, EventRecord, decoded
 from jacaros.look.why.explanation import seconds
 from jacaros.robots.world.data.ground_truth import FIELDS
 
 T = TypeVar("T", bound=Any)
+Happened = tuple[float, str, Data | EventRecord | None]
+"""``t``, the kind of an event and its data, plain or decoded; None for those that are not needed."""
+UNASKED = frozenset({"laser", "path", "property", "graph"})
+"""Kinds of events that no question needs."""
 TimedRecords = list[tuple[float, T]]
 """Records with their times, the oldest first."""
 AT_ONCE = 0.2
@@ -127,13 +131,18 @@ class Past:
     exit_code: int | None = None
 
     @classmethod
-    def of(cls, happened: Iterable[Record], until: float | None = None) -> "Past":
+    def of(cls, happened: Iterable[Happened], until: float | None = None) -> "Past":
         """Read records. Those after *until* (seconds), of unknown kinds or malformed are skipped."""
         past = cls()
         for t, event, data in happened:
-            if (until is not None and t > until) or not isinstance(data, Mapping):
+            if until is not None and t > until:
                 continue
             past.end = max(past.end, t)
+            if isinstance(data, EventRecord):
+                past._take(t, data)
+                continue
+            if not isinstance(data, Mapping):
+                continue
             try:
                 past._take(t, None if event in FIELDS else decoded(event, data))
             except ValidationError:
@@ -145,6 +154,8 @@ class Past:
 
     def _take(self, t: float, data: Any) -> None:
         match data:
+            case records.BeliefRecord():  # most records are of this kind
+                self.beliefs.append((t, data))
             case records.CauseRecord():
                 known = self.links.get(data.id)
                 at = t if data.at is None else data.at
@@ -195,8 +206,6 @@ class Past:
                 self.debug = data
             case records.EndedRecord():
                 self.exit_code = data.code
-            case records.BeliefRecord():
-                self.beliefs.append((t, data))
             case records.GoalRecord():
                 self.goals.append((t, data))
 

@@ -17,6 +17,7 @@ _PLAN = re.compile(r"@\w+|[\w./\\-]+\.asl:\d+")
 _EVENT = re.compile(r"(?:^|(?<=[\s`'\"]))(?:[+\-]?[!?]|[+\-^])(?=~?[a-z_'])")
 LITERAL = re.compile(r"~?[a-z]\w*(?=\()|(?:(?<=^belief\s)|(?<=changed\s))~?[a-z]\w*")
 _PARTS = re.compile(r"\s*([+\-^]*)\s*([!?]?)\s*(.*)", re.DOTALL)
+_PLAIN = re.compile(r"[a-z]\w*(?=[(\[])")
 _NAME = re.compile(r"~?\s*(?:\w+::)?(?:'[^']*'|[\w.]+)")
 _PLAIN_NAME = re.compile(r"~?(?:\w+::)?(?:'[^']*'|\w+)")
 
@@ -117,6 +118,8 @@ def _split(text: str) -> tuple[str, str, str]:
 
 def name_of(text: str) -> str:
     """Return the name in a trigger, goal or belief, such as ``go`` in ``+!go(dock)``; empty if it has none."""
+    if plain := _PLAIN.match(text):  # most beliefs, of which hours of a run have a million
+        return plain[0]
     return _name(_split(text)[2])
 
 

@@ -18,7 +18,7 @@ from jacaros.look.why.about_motion import explain_command, explain_drive, explai
 from jacaros.look.why.about_now import explain_now
 from jacaros.look.why.chains import with_values
 from jacaros.look.why.explanation import Explanation, seconds
-from jacaros.look.why.past import OPEN, Deed, Past
+from jacaros.look.why.past import OPEN, Deed, Happened, Past
 from jacaros.look.why.patterns import LITERAL, Question, QuestionPattern, literal_at, name_of
 from jacaros.robots.world.data.ground_truth import FIELDS
 from jacaros.runtime.errors import UsageError
@@ -75,7 +75,7 @@ _MOTIONS: _Verbs = ((deeds.TURNING, explain_turn), (deeds.MOVING, explain_drive)
 
 
 def explain(
-    happened: Iterable[Record], question: str, at: float | None = None, agent: str = "", robot: str = ""
+    happened: Iterable[Happened], question: str, at: float | None = None, agent: str = "", robot: str = ""
 ) -> Explanation:
     """Answer a question about a run.
 

@@ -2,14 +2,26 @@
 
 import asyncio
 import json
+from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from jacaros.runtime.cli.options import PATH, option, place_options
 from jacaros.runtime.cli.outputs import check_output, check_view
-from jacaros.runtime.cli.usage import examples, existing, read_recording, usage_error
+from jacaros.runtime.cli.usage import (
+    examples,
+    existing,
+    no_gc,
+    read_recording,
+    recorded_events,
+    usage_error,
+)
+
+if TYPE_CHECKING:
+    from jacaros.look.why.past import Happened
 
 # An event such as `-hidden(_)` must not be read as options, not even as -h.
 _QUESTIONS = {"ignore_unknown_options": True, "help_option_names": ["--help"]}
@@ -114,6 +126,8 @@ def why(
     error, which lists the operations, goals and events of the run. Variables match anything. Quote the question with single
     quotes, because shells interpret `!` and brackets.
     """  # fmt: skip
+    from jacaros.look.records.recording import Recording
+    from jacaros.look.why.past import UNASKED
     from jacaros.look.why.story import story_of, story_text
     from jacaros.look.why.why import explain
 
@@ -121,16 +135,23 @@ def why(
         raise usage_error("--story takes no question, agent or robot", "pass only --at and --json with it")
     if not story and not question:
         raise usage_error("missing question", "ask one, such as `did it dock`, or pass --story")
-    recording = read_recording(run)
+    recording = Recording()
     if story:
-        lines = story_of(each for each in recording.events if at is None or each[0] <= at)
-        told = [asdict(each) for each in lines]
-        click.echo(json.dumps(told, ensure_ascii=False) if as_json else story_text(lines))
+        with no_gc():
+            told = recorded_events(run, recording, UNASKED - {"property"})
+            lines = story_of(each for each in told if at is None or each[0] <= at)
+        plain = [asdict(each) for each in lines]
+        click.echo(json.dumps(plain, ensure_ascii=False) if as_json else story_text(lines))
         return
-    if robot and robot not in recording.robots:
-        known = ", ".join(recording.robots) or "none"
-        raise usage_error(f"unknown robot: `{robot}`", f"robots in the recording: {known}")
-    answer = explain(recording.events, " ".join(question), at, agent, robot)
+
+    def happened() -> Iterator["Happened"]:
+        yield from recorded_events(run, recording, UNASKED, is_plain=False)
+        if robot and robot not in recording.robots:
+            known = ", ".join(recording.robots) or "none"
+            raise usage_error(f"unknown robot: `{robot}`", f"robots in the recording: {known}")
+
+    with no_gc():
+        answer = explain(happened(), " ".join(question), at, agent, robot)
     click.echo(json.dumps(answer.data(), ensure_ascii=False) if as_json else answer.text())
 
 

@@ -3,9 +3,10 @@
 import gc
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Container, Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -111,19 +112,34 @@ def read_recording(path: Path) -> "Recording":
         JacarosError: the file is not a recording.
         OSError: the file cannot be read.
     """
+    from jacaros.look.records.recording import Recording  # here: it imports numpy and the simulator
+
+    recording = Recording()
+    with no_gc():
+        recording.events.extend(recorded_events(path, recording))
+    return recording
+
+
+def recorded_events(
+    path: Path, into: "Recording", without: Container[str] = (), is_plain: bool = True
+) -> Iterator[tuple[float, str, Any]]:
+    """Read a recording like `read_recording`, and yield its events, which *into* does not keep (`Recording.streamed`)."""
     if path.is_dir():
         raise usage_error(f"`{path}` is a folder", "name a recording in it")
     if not is_file(path):
         beside = [str(each) for each in path.parent.glob("*.*") if _RECORDINGS.intersection(each.suffixes)]
         help = suggestion(str(path), beside, f"jacaros run FILE --record {path}")
         raise usage_error(f"recording not found: `{path}`", help)
-    from jacaros.look.records.recording import Recording  # here: it imports numpy and the simulator
+    yield from into.streamed(path, without, is_plain)
+    for warning in into.warnings:
+        click.echo(f"warning: {warning}", err=True)
 
-    gc.disable()  # looking for cycles, of which a recording has none, takes a third of the time
+
+@contextmanager
+def no_gc() -> Iterator[None]:
+    """Do not look for cycles, of which a recording has none: it takes a third of the time."""
+    gc.disable()
     try:
-        recording = Recording.read(path)
+        yield
     finally:
         gc.enable()
-    for warning in recording.warnings:
-        click.echo(f"warning: {warning}", err=True)
-    return recording
