@@ -10,7 +10,7 @@ import pytest
 from rich.console import Console
 
 from jacaros.look.page.scene import RobotView
-from jacaros.look.page.terminal_view import BrailleMap, TerminalView, character
+from jacaros.look.page.terminal_view import BrailleMap, IntentionBars, TerminalView, character
 from jacaros.robots.world import World
 
 
@@ -22,6 +22,9 @@ class Wall:
 
     def __call__(self) -> float:
         return self.now
+
+
+RUNS = f"{'=':>20}"
 
 
 def view_of(world: str = "house", terminal: bool = True) -> tuple[TerminalView, Wall, Any, Console]:
@@ -116,7 +119,7 @@ def test_without_a_world_goals_and_output_are_shown() -> None:
     view.text(0.0, "a", "on the way")
     view.frame(1.0, [])
     view.close()
-    assert rendered(view).splitlines()[1:] == ["pursuing !go", "[a] on the way"]
+    assert rendered(view).splitlines()[1:] == [f"{RUNS} pursuing !go", "[a] on the way"]
 
 
 def test_each_intention_has_a_row_with_its_current_step_first() -> None:
@@ -138,14 +141,42 @@ def test_each_intention_has_a_row_with_its_current_step_first() -> None:
     view.frame(1.0, [])
     view.close()
     assert rendered(view).splitlines()[1:] == [
-        "a pursues !visit(north) (suspended) for !patrol([north,east,south,west],100)",
-        "a pursues !watch_over(storehouse,by_night)",
-        "b pursues !wait(9)",
-        "b pursues !wait(8)",
-        "b pursues !wait(7)",
-        "b pursues !wait(6)",
-        "b pursues 1 more",
+        f"{RUNS} a pursues !visit(north) (suspended) for !patrol([north,eas…",
+        f"{RUNS} a pursues !watch_over(storehouse,by_night)",
+        f"{RUNS} b pursues !wait(9)",
+        f"{RUNS} b pursues !wait(8)",
+        f"{RUNS} b pursues !wait(7)",
+        f"{RUNS} b pursues !wait(6)",
+        f"{'':20} b pursues 1 more",
     ]
+
+
+def test_a_bar_shows_the_last_minute_of_an_intention() -> None:
+    view = TerminalView(Console(file=io.StringIO(), force_terminal=True, width=40), Wall())
+
+    def tell(t: float, kind: str, state: str, number: int, **more: str) -> None:
+        view.event(t, kind, {"agent": "a", "id": number, "intention": number, "state": state, **more})
+
+    for number in (1, 2):
+        tell(0.0, "goal", "pursued", number, goal=f"!go({number})")
+        tell(12.0, "intention", "waits", number)
+    tell(42.0, "intention", "suspended", 1)
+    tell(45.0, "goal", "failed", 2, goal="!go(2)", why="blocked")
+    tell(45.0, "intention", "over", 2)
+    view.frame(60.0, [])
+    assert rendered(view).splitlines()[1:] == [
+        "===----------....... pursuing !go(1)",
+        "===-----------x      a failed !go(2)",
+    ]
+    view.frame(106.0, [])
+    assert rendered(view).splitlines()[1:] == [f"{'.' * 20} pursuing !go(1)"]
+
+
+def test_ended_intentions_are_forgotten() -> None:
+    bars = IntentionBars()
+    for number in range(5000):
+        bars.take(number, "goal", {"agent": "a", "intention": number, "state": "pursued"})
+    assert len(bars._changes) < 300
 
 
 def test_each_robot_has_a_gauge() -> None:

@@ -102,6 +102,61 @@ def character(bits: int) -> str:
     return chr(_EMPTY | bits) if bits else " "
 
 
+# ---- bars of the last minute
+
+_MINUTE, _CELLS = 60.0, 20
+"""Seconds that a bar shows, and its characters."""
+_CHARACTERS = {"runs": "=", "pursued": "=", "resumed": "=", "waits": "-", "suspended": ".", "failed": "x"}
+_LEGEND = "  = runs  - waits  . suspended  x failed"
+
+
+class IntentionBars:
+    """What each intention did in the last minute, the newest at the right end."""
+
+    def __init__(self) -> None:
+        self._changes: dict[tuple[str, object], deque[tuple[float, str]]] = {}
+        self._lost: dict[tuple[str, object], tuple[float, str]] = {}
+        self._limit = 100
+
+    def take(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
+        """Take the record of a goal or an intention."""
+        key = str(data.get("agent", "")), data.get("id" if kind == "intention" else "intention")
+        state = str(data.get("state", ""))
+        if state == "failed":
+            self._lost[key] = (
+                t,
+                str(data.get("goal", "")),
+            )  # of those that fail together, the lowest comes last
+        if state in _CHARACTERS or state == "over":
+            changes = self._changes.setdefault(key, deque(maxlen=200))
+            changes.append((t, _CHARACTERS.get(state, " ")))
+        if len(self._changes) > self._limit:
+            self._forget(t)
+
+    def bar(self, key: tuple[str, object], t: float) -> str:
+        """Return the last minute of an intention."""
+        cells, ends = [], [t - _MINUTE * (1 - (n + 1) / _CELLS) for n in range(_CELLS)]
+        for end in ends:
+            known = [each for each in self._changes.get(key, ()) if each[0] <= end]
+            failed = any(sign == "x" and at > end - _MINUTE / _CELLS for at, sign in known)
+            cells.append("x" if failed else known[-1][1].replace("x", " ") if known else " ")
+        return "".join(cells)
+
+    def lost(self, t: float) -> Iterator[tuple[tuple[str, object], str]]:
+        """Yield the intentions that failed in the last minute, with their goals."""
+        yield from ((key, goal) for key, (at, goal) in self._lost.items() if t - at <= _MINUTE)
+
+    def _forget(self, t: float) -> None:
+        """Forget failures of more than a minute ago, and intentions that ran last then: they have ended."""
+        self._lost = {key: each for key, each in self._lost.items() if t - each[0] <= _MINUTE}
+        self._changes = {
+            key: each
+            for key, each in self._changes.items()
+            if each[-1][1] in "-." or t - each[-1][0] <= _MINUTE
+        }
+        self._limit = 2 * len(self._changes) + 100
+
+
 # ---- the view
 
 
@@ -159,6 +214,7 @@ class TerminalView:
         self._robots: Sequence[RobotView] = ()
         self._goals: dict[tuple[str, object], tuple[str, object]] = {}
         """Open goals by agent and id: the text shown, and the intention."""
+        self._bars = IntentionBars()
         self._prints: deque[tuple[str, str]] = deque(maxlen=_PRINTS)
         self._drawn_at = wall()
         self._drawn_t = 0.0
@@ -199,6 +255,8 @@ class TerminalView:
     def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
         """Process an event; goals, doors and people are shown."""
         self._state.event(t, kind, data)
+        if kind in ("goal", "intention"):
+            self._bars.take(t, kind, data)
         if kind != "goal":
             return
         goal, state = str(data.get("goal", "")), str(data.get("state", ""))
@@ -237,7 +295,9 @@ class TerminalView:
     def picture(self) -> Group:
         """Return the whole view."""
         head = Text(f"{self._drawing.get('name', '')}  ", style="bold")
-        head.append(f"{_minutes(self._t)}  ×{self._factor:.0f}", style="not bold dim")
+        head.append(
+            f"{_minutes(self._t)}  ×{self._factor:.0f}{_LEGEND if self._goals else ''}", style="not bold dim"
+        )
         # Without a known world, goals and output are still useful.
         rows = [head, self.map()] if self._drawing else [head]
         rows += [self._gauge(robot, i) for i, robot in enumerate(self._robots)]
@@ -247,7 +307,7 @@ class TerminalView:
         return Group(*rows)
 
     def _pursued(self) -> list[str]:
-        """Return a row for each intention of each agent, its state first, because rows are cut at the terminal's edge."""
+        """Return a row for each intention of each agent, its bar first, because rows are cut at the terminal's edge."""
         agents: dict[str, dict[object, list[str]]] = {}
         for (agent, _), (goal, intention) in self._goals.items():
             stacks = agents.setdefault(agent, {})
@@ -256,10 +316,14 @@ class TerminalView:
         rows = []
         for agent, stacks in sorted(agents.items()):
             who = "pursuing" if len(agents) == 1 else f"{agent} pursues"
-            newest = list(reversed(stacks.values()))
-            rows += [f"{who} {' for '.join(stack)}" for stack in newest[:_INTENTIONS]]
-            if len(newest) > _INTENTIONS:
-                rows.append(f"{who} {len(newest) - _INTENTIONS} more")
+            for intention in [*reversed(stacks)][:_INTENTIONS]:
+                bar = self._bars.bar((agent, intention), self._t)
+                rows.append(f"{bar} {who} {' for '.join(stacks[intention])}")
+            if len(stacks) > _INTENTIONS:
+                rows.append(f"{'':{_CELLS}} {who} {len(stacks) - _INTENTIONS} more")
+        for (agent, intention), goal in self._bars.lost(self._t):
+            if intention not in agents.get(agent, {}):
+                rows.append(f"{self._bars.bar((agent, intention), self._t)} {agent} failed {goal}")
         return rows
 
     def map(self) -> Text:
