@@ -85,7 +85,10 @@ def test_what_led_to_something_stays() -> None:
 def test_beliefs_that_are_gone_for_a_while_and_several_at_a_time_stay() -> None:
     gap = [belief(400.0, "-", changes(3000)[-3][2]["belief"]), belief(410.0, "+", f"height(1){RECENT}")]
     many = [belief(420.0 + n, "+", f"place({n})") for n in range(5)]
-    events = [*changes(3000), *gap, *many, belief(430.0, "-", "place(2)")]
-    found = held(list(thinned(events)))
+    gone: Record = (431.0, "property", {"artifact": "a", "name": "h"})
+    events = [*changes(3000), *gap, *many, belief(430.0, "-", "place(2)"), gone]
+    kept = list(thinned(events))
+    found = held(kept)
+    assert kept[-1] is gone
     assert found[-1] == {f"height(1){RECENT}", *(f"place({n})" for n in (0, 1, 3, 4))}
     assert set() in found
