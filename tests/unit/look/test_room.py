@@ -142,7 +142,14 @@ async def test_names_of_robots_do_not_overlap() -> None:
         await page.wait_for("window.named.size > 0")
         texts = await page.evaluate("[...named.keys()]")
         boxes = await page.evaluate("[...named.values()]")
-        assert len(boxes) > 6, texts
+        assert len(boxes) > 5, texts
+        left, right, top = await page.evaluate(
+            "(() => { const map = document.querySelector('#map canvas').getBoundingClientRect(),"
+            " box = document.querySelector('#map .layers').getBoundingClientRect();"
+            " return [box.left - map.left, box.right - map.left, box.top - map.top]; })()"
+        )
+        on_buttons = [x + width / 2 > left and x - width / 2 < right and y > top for x, y, width in boxes]
+        assert not any(on_buttons), texts
         for n, (x, y, width) in enumerate(boxes):
             for other_x, other_y, other_width in boxes[:n]:
                 assert abs(x - other_x) >= (width + other_width) / 2 or abs(y - other_y) >= 12

@@ -28,6 +28,7 @@ export class GraphView {
     const graph = this.environment.graph(t), wanted = this.filter.value.trim().toLowerCase();
     if (this.shown && this.shown[0] === graph && this.shown[1] === wanted) return;
     this.shown = [graph, wanted];
+    this.filter.hidden = this.table.hidden = !graph;
     setText(this.node, graph ? `Node ${graph.node}` : "The graph has not been read yet.");
     const topics = (graph?.topics ?? []).filter(({ name, type }) => `${name} ${type}`.toLowerCase().includes(wanted));
     topics.sort((a, b) => (Boolean(b.ours) - Boolean(a.ours)) || (a.name < b.name ? -1 : 1));

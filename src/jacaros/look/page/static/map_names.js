@@ -10,9 +10,12 @@ export class MapNames {
     this.sides = new Map();  // where each name was last, so that it does not jump without need
   }
 
-  /** @param {Array<object>} robots `name`, `x`, `y`, `size` in pixels; a robot that `matters` has its name in any case. */
-  draw(pen, robots, room) {
-    const taken = robots.map(({ x, y, size }) => [x - size, y - size, x + size, y + size]);
+  /**
+   * @param {Array<object>} robots `name`, `x`, `y`, `size` in pixels; a robot that `matters` has its name in any case.
+   * @param {number[]} corner the sides of a box without names.
+   */
+  draw(pen, robots, room, corner) {
+    const taken = [corner, ...robots.map(({ x, y, size }) => [x - size, y - size, x + size, y + size])];
     for (const robot of [...robots].sort((a, b) => Boolean(b.matters) - Boolean(a.matters))) {
       const number = /\d+$/.exec(robot.name)?.[0], texts = number ? [robot.name, number] : [robot.name];
       const found = texts.map((text) => this.find(pen, robot, text, taken, room)).find(Boolean)

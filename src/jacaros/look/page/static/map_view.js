@@ -8,7 +8,7 @@ import { drawDirt, drawDoors, drawObjects, drawObstacles, drawPeople } from "./t
 import { TrailDrawing } from "./trail_drawing.js";
 
 const REACH = 8;  // pixels around a robot, a door or a person in which a click selects it
-const BUTTONS = 36;  // pixels at the foot of the map, where names would be on its buttons
+const BUTTONS = { width: 270, height: 36 };  // pixels of the corner below, where names would be on the buttons
 
 /** The world from above. What stands still, and the paths so far, are kept on canvases of their own. */
 export class MapView {
@@ -127,7 +127,7 @@ export class MapView {
       const size = sizeOf(robot, projection) + 4;
       if (matters || states.length > 1) named.push({ name: robot.name, x: projection.x(state.x), y: projection.y(state.y), size, matters });
     });
-    this.names.draw(this.pen, named, { width: projection.width, height: projection.height - BUTTONS });
+    this.names.draw(this.pen, named, projection, [0, projection.height - BUTTONS.height, BUTTONS.width, projection.height]);
   }
 
   /** Draw the robot that the pointer holds where it would be put down. */
