@@ -170,7 +170,7 @@ def _beside(name: str, project: ProjectModules) -> Sequence[ModuleType]:
     return project.load(path) if path and project.place(path) is not None else ()
 
 
-_JAVA_FOLDERS = ("", "src", "src/env", "src/java", "src/main/java", "src/agt")
+_JAVA_FOLDERS = ("", "src", "src/env", "src/java", "src/main/java", "src/agt", "../env", "../java")
 """Folders of a JaCaMo project in which Java classes are."""
 
 

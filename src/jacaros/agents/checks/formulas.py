@@ -255,6 +255,8 @@ def _is_like(part: object, other: object, any_term: bool) -> bool:
 
 
 _WORD: Final = re.compile(r"\b[A-Z]\w*")
+_APART: Final = re.compile(r"[0-9A-Z]")
+"""What tells names of their own apart, as in ``X1`` and ``X2``, ``GoalX`` and ``GoalY``."""
 _CONSTANTS: Final = {
     "True": "write `true` in lower case",
     "TRUE": "write `true` in lower case",
@@ -351,7 +353,8 @@ def _in_head(clause: Clause) -> list[str]:
 
 
 def _meant_variable(name: str, occurrences: Counter[str]) -> str:
-    meant = suggestion(name, (other for other in occurrences if other != name))
+    stem = _APART.sub("", name)
+    meant = suggestion(name, (other for other in occurrences if _APART.sub("", other) != stem))
     return f"{meant} Otherwise write `_{name}`" if meant else f"if this is intended, write `_{name}`"
 
 

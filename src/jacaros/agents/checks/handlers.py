@@ -105,13 +105,15 @@ def _misspelt_plans(found: ByKind, posts: Posts) -> Iterator[Diagnostic]:
     heads = [each.literal for each in found.of(nodes.Trigger) if each.kind == "!"]
     with_plan = {_key(head) for head in heads if isinstance(head, nodes.Literal)}
     known = {_key(goal) for goal in posted if isinstance(goal, nodes.Literal)} & with_plan
+    sizes = Counter(_key(head) for head in heads if isinstance(head, nodes.Literal))
     for plan, literal in _of_goals(found.of(nodes.Plan), "+"):
         trigger, key = plan.trigger, _key(literal)
         if trigger.kind != "!" or posts.may_post(key):
             continue
         meant = [f"+!{name}" for name, size in sorted(known) if size == key[1] and is_misspelt(key[0], name)]
-        # A plan that begins the rounds of its own goal, as in `+!patrol <- !patrol(1).`, is for others to post.
-        if not any(goal.functor == key[0] for goal in _posted_in(plan)):
+        # A plan that begins the rounds of its own goal, as in `+!patrol <- !patrol(1).`, is for others to post. A number
+        # of arguments that several plans have, such as `+!make(X)` and `-!make(X)`, is not a slip either.
+        if sizes[key] == 1 and not any(goal.functor == key[0] for goal in _posted_in(plan)):
             meant += [f"+!{_text(each)}" for each in sorted(known) if each[0] == key[0]]
         if meant:
             message = f"nothing posts the goal `!{_text(key)}`"

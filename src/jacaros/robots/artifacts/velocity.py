@@ -173,7 +173,11 @@ class ArtCmdVelAndOdometry(ArtCmdVel):
 
 
 class ArtCmdVelMuxAndOdometry(ArtCmdVelAndOdometry):
-    """`ArtCmdVelMux` that also shows odometry, in ``odom_cmd_vel_mux(X, Y, Z)``."""
+    """`ArtCmdVelMux` that also shows odometry.
+
+    Properties:
+        odom_cmd_vel_mux(X, Y, Z): position in metres; 0, 0, 0 before the first message.
+    """
 
     command_topic = ArtCmdVelMux.command_topic
     odometry_property = "odom_cmd_vel_mux"

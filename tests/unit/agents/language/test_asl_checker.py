@@ -92,6 +92,9 @@ def test_a_variable_that_occurs_once_in_a_text_may_be_a_slip():
     (warning,) = warnings("+!go(Room) <- move(Rom).")
     assert warning.message == "variable `Rom` occurs only once in this plan"
     assert warning.help == "did you mean `Room`? Otherwise write `_Rom`"
+    assert {each.help for each in warnings("+!go : at(HomeX, HomeY, X1, X2).")} == {
+        f"if this is intended, write `_{name}`" for name in ("HomeX", "HomeY", "X1", "X2")
+    }
     assert messages("r(X) :- q(Y).") == ["variable `Y` occurs only once in this rule"]
     assert messages("+!go(Room)[source(S)] <- move(_Rom, _).") == []
     assert messages('+!g <- p(X); .puts("#{X}").') == []

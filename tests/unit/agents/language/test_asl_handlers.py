@@ -127,3 +127,9 @@ def test_actions_that_artifacts_may_have_are_not_reported(text):
 def test_an_internal_action_that_is_a_goal_is_one_with_another_mark():
     (found,) = check(program("!start. +!start <- .go(3). +!go(X) <- .print(X)."), KNOWN)
     assert (found.code, found.help) == ("unknown-internal-action", "did you mean `!go`?")
+
+
+def test_a_number_of_arguments_with_a_failure_plan_of_its_own_is_meant():
+    text = "!go. +!go <- !make. +!make <- act. +!make(X) <- act(X)."
+    assert unused(text) == ["did you mean `+!make/0`?"]
+    assert unused(f"{text} -!make(_) <- stop.") == []

@@ -85,3 +85,12 @@ def test_an_unrelated_type_is_not_suggested(room: Path, outcome: Outcome) -> Non
     told = outcome("devices.Cooker")[1]
     assert "did you mean" not in told
     assert "write `class Cooker(Artifact)` in devices.py or artifacts.py beside the project file" in told
+
+
+def test_java_beside_the_folder_of_a_lone_program_is_found(
+    room: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (room / "src" / "asl").mkdir()
+    (room / "src" / "asl" / "lone.asl").write_text('!go. +!go <- makeArtifact("h", "devices.Heater", [], _).')
+    assert call(["check", "src/asl/lone.asl"]) == 0
+    assert "`devices.Heater` is in Java (src/env/devices/Heater.java)" in capsys.readouterr().out
