@@ -10,6 +10,7 @@
 (True, False)
 """
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import pi
@@ -46,6 +47,7 @@ _ENDINGS: Final = "sdr"
 """Letters that make another form of a word."""
 _FEWEST_FACTS: Final = 3
 """Of so many facts, the one that differs is probably wrong."""
+_TERM: Final = re.compile(r"[a-z]\w*(\(.*\))?")
 _MOST_OPTIONS: Final = 8
 """Number of values that are listed."""
 
@@ -114,7 +116,7 @@ def unmet_goals(program: nodes.Program, adders: Mapping[str, Sequence[Adder]]) -
             if value_of(argument, {}).kind:
                 found = [_unmet(plan, place, argument, adders) for plan in plans.get(key_of(goal), ())]
                 if found and (first := found[0]) and all(found):
-                    yield replace(first, message=f"no plan for `!{_text(goal)}`: {first.message}")
+                    yield replace(first, message=f"no plan for `!{as_written(goal)}`: {first.message}")
 
 
 def _refuses(plan: nodes.Plan) -> bool:
@@ -179,8 +181,10 @@ def _mismatch(reader: Reader, same: Sequence[Adder]) -> Iterator[Diagnostic]:
             if wanted.kind in kinds and (reader.denied or reader.how == "deletion"):
                 continue
             has = _described(given, literal, place)
-            is_ = f"`{_text(argument)}` is {_KINDS[wanted.kind]}, but " if wanted.kind not in kinds else ""
-            message = f"`{_text(literal)}` never matches: {is_}{has}"
+            is_ = (
+                f"`{as_written(argument)}` is {_KINDS[wanted.kind]}, but " if wanted.kind not in kinds else ""
+            )
+            message = f"`{as_written(literal)}` never matches: {is_}{has}"
             yield problem(MISMATCH, message, argument.span or literal.span, _help(literal, same, place))
             return
 
@@ -214,23 +218,23 @@ def _help(literal: nodes.Literal, same: Sequence[Adder], place: int) -> str:
     if isinstance(wanted, nodes.Literal) and any(
         each.kind == "number" and not each.options for each in given
     ):
-        return f"begin variables with a capital letter: `{_text(_with_variables(literal, same))}`"
+        return f"begin variables with a capital letter: `{as_written(_with_variables(literal, same))}`"
     options = list(dict.fromkeys(option for each in given for option in each.options))
-    near = close_matches(_text(wanted), options) or options[:_MOST_OPTIONS]
-    texts = list(map(_text, literal.arguments))
+    near = close_matches(as_written(wanted), options) or options[:_MOST_OPTIONS]
+    texts = list(map(as_written, literal.arguments))
     lists = (", ".join([*texts[:place], option, *texts[place + 1 :]]) for option in near)
     return did_you_mean(f"{literal.functor}({each})" for each in lists)
 
 
-def _text(node: nodes.Node) -> str:
+def as_written(node: nodes.Node) -> str:
     """Write a term as people do."""
     match node:
         case nodes.Variable(unnamed=True):
             return "_"
         case nodes.Literal(functor=functor, arguments=arguments) if arguments:
-            return f"{'~' * node.negated}{functor}({', '.join(map(_text, arguments))})"
+            return f"{'~' * node.negated}{functor}({', '.join(map(as_written, arguments))})"
         case nodes.Relation(operator=operator, left=left, right=right):
-            return f"{_text(left)} {operator} {_text(right)}"
+            return f"{as_written(left)} {operator} {as_written(right)}"
     return format_term(node)
 
 
@@ -276,7 +280,7 @@ def _comparisons(clause: nodes.Node, variables: Mapping[str, Value]) -> Iterator
                 continue
             wanted = value_of(other, {})
             if wanted.kind and not value.fits(wanted) and wanted.kind != value.kind:
-                message = f"`{_text(relation)}` compares {_KINDS[value.kind]} with {_KINDS[wanted.kind]}"
+                message = f"`{as_written(relation)}` compares {_KINDS[value.kind]} with {_KINDS[wanted.kind]}"
                 yield problem(MISMATCH, message, relation.span, _in_kind(other, value))
             elif isinstance(other, nodes.Number) and (unit := _unit_of(other.value, value)):
                 name, number = format_term(variable), format_term(other)
@@ -292,7 +296,8 @@ def _in_kind(other: nodes.Node, value: Value) -> str | None:
         return did_you_mean(value.options)
     if value.kind == "string":
         return did_you_mean([f'"{text}"'])
-    return did_you_mean([str(text)]) if value.kind == "atom" and isinstance(other, nodes.String) else None
+    is_term = value.kind == "atom" and isinstance(other, nodes.String) and _TERM.fullmatch(str(text))
+    return did_you_mean([str(text)]) if is_term else None
 
 
 def _unit_of(number: float, value: Value) -> str:

@@ -104,6 +104,7 @@ class ProgramFlow:
     Attributes:
         adders: what gives the agent beliefs, by name.
         told: what gives them to other agents.
+        removed: names of beliefs that it removes or replaces; "" if it removes any belief.
         readers: in source order for each clause.
         mentioned: names of other terms that are computed with or passed on, so they may become beliefs unseen.
         said, spelled: words of strings that are not only printed; words of strings that may be read as terms.
@@ -116,6 +117,7 @@ class ProgramFlow:
 
     adders: dict[str, list[Adder]] = field(default_factory=dict)
     told: dict[str, list[Adder]] = field(default_factory=dict)
+    removed: set[str] = field(default_factory=set)
     readers: list[Reader] = field(default_factory=list)
     mentioned: set[Key] = field(default_factory=set)
     said: set[str] = field(default_factory=set)
@@ -433,6 +435,8 @@ class _Collector:
             self.found.is_open |= isinstance(operand, nodes.Variable)
             self._push(_At(), operand)
             return
+        if "-" in change.operator:
+            self.found.removed.add(key_of(operand)[0])
         if "+" in change.operator:
             self._add(self.found.adders, "step", operand)
         else:
@@ -461,6 +465,8 @@ class _Collector:
     def _call(self, call: nodes.InternalAction, at: _At) -> None:
         action = self._actions.get(call.name, UNDECLARED)
         self.found.is_open |= action.brings_in
+        if call.name == ".abolish" and nodes.Variable in map(type, call.arguments):
+            self.found.removed.add("")
         place, arguments = action.performative, list(call.arguments)
         if place is not None and len(arguments) > place + 1:
             self._tell(arguments[place], arguments[place + 1], bool(arguments[place + 2 :]))
@@ -474,6 +480,7 @@ class _Collector:
             elif action.awaits:
                 self._await(each)
             elif call.name == ".abolish" and isinstance(each, nodes.Literal):
+                self.found.removed.add(key_of(each)[0])
                 self._read("deletion", each)
             else:
                 self._push(below, each)
@@ -489,7 +496,9 @@ class _Collector:
         word = performative.functor if isinstance(performative, nodes.Literal) else ""
         contents = content.items if isinstance(content, nodes.ListTerm) else (content,)
         for each in contents:
-            if isinstance(each, nodes.String) and word in _TELLS:
+            if word == "untell":
+                self.found.removed.add(key_of(each)[0] if isinstance(each, nodes.Literal) else "")
+            if isinstance(each, nodes.String) and word in _TELLS and not has_answer:
                 self.found.texts.append(each)
             elif not isinstance(each, nodes.Literal):
                 self.found.tells_unseen |= isinstance(each, nodes.Variable) and word in ("", *_TELLS)

@@ -95,9 +95,15 @@ def test_a_belief_that_nothing_adds_is_unknown(tmp_path: Path, program: str, pla
             "add it in a plan (`+ready`), or at the beginning (`ready.`), or check with its `--mapping FILE`",
         ),
         ("at(1, 2). !go. +!go : at(X) <- .print(X).", "did you mean `at/2`?"),
+        (
+            "!go. +!go : seen(_, X) <- .print(X).",
+            "add it in a plan (`+seen(_, X)`), or at the beginning (`seen(_, X).`), or check with its `--mapping FILE`",
+        ),
+        ('+!go <- .send(bob, tell, "ready").', "did you mean `ready`?"),
+        ('+!go <- .send(bob, tell, "Not ready").', None),
     ],
 )
-def test_the_help_names_what_is_there(tmp_path: Path, program: str, help: str) -> None:
+def test_the_help_names_what_is_there(tmp_path: Path, program: str, help: str | None) -> None:
     assert [each.help for each in found(tmp_path, program)] == [help]
 
 
@@ -302,3 +308,35 @@ def test_a_share_is_not_rounded_to_whole_numbers(tmp_path: Path, field: str, hel
         [("wrong-unit", "warning", 5)] if help else []
     )
     assert all(f"`unit: {help}`" in (each.help or "") for each in found_)
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        "+!more <- -busy(_).",
+        "+!more <- -+busy(b).",
+        "+!more <- .abolish(busy(_)).",
+        "+!more(B) <- .abolish(B).",
+        "+!more <- .send(self, untell, busy(a)).",
+        "+!more <- move.",
+    ],
+)
+def test_an_event_of_a_belief_that_nothing_removes_never_happens(tmp_path: Path, more: str) -> None:
+    program = "!go. +!go <- +busy(a). -busy(X) <- .print(X)."
+    (reported,) = found(tmp_path, program)
+    assert reported.message == "event `-busy/1` never happens: nothing removes `busy`"
+    assert reported.help == "remove it, as in `-busy(X)`"
+    assert found(tmp_path, f"{program} {more}") == []
+
+
+def test_the_answer_to_a_question_may_be_a_text(tmp_path: Path) -> None:
+    plan = "+!kqml_received(Sender, askOne, name, Asked) <- .send(Sender, tell, {}, Asked)."
+    assert found(tmp_path, plan.format('"Maria dos Santos"')) == []
+
+
+def test_properties_that_a_subclass_renames_are_known(tmp_path: Path) -> None:
+    made = '!go. +!go <- makeArtifact("wheels", "ArtCmdVelMuxAndOdometry", [], Id); focus(Id).'
+    assert told(tmp_path, f"{made} +odom_cmd_vel_mux(X, _, _) <- .print(X).") == []
+    assert told(tmp_path, f"{made} +odom_cmd_vel_mx(X, _, _) <- .print(X).") == [
+        "unknown-belief odom_cmd_vel_mx(X, _, _)"
+    ]

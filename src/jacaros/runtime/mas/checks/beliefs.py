@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from jacaros.agents.checks.beliefs import (
+    as_written,
     comparisons,
     is_misspelt,
     mismatches,
@@ -131,6 +132,7 @@ class _BeliefCheck:
         self._units = parameter_units(types) if self._is_closed else {}
         self._misspelt = _misspelt_adders(flows, self._flow.observables)
         self._mentioned = {key for each in flows for key in each.mentioned}
+        self._removed = {name for each in flows for name in each.removed}
         self._reported: set[Key] = set()
 
     def findings(self, elsewhere: frozenset[str]) -> Iterator[Diagnostic]:
@@ -167,6 +169,10 @@ class _BeliefCheck:
         if same:
             if is_event and self._knows_artifacts:
                 yield from _from_wrong_source(reader, [*same, *rules])
+            if reader.sign == "-" and self._keeps(name, same):
+                yield _never(
+                    reader, f"nothing removes `{name}`", f"remove it, as in `-{as_written(literal)}`"
+                )
         elif rules and self._knows_artifacts:
             yield _never(reader, *_of_rule(reader, rules[0]))
         elif known and self._knows_artifacts:
@@ -178,6 +184,11 @@ class _BeliefCheck:
                 yield problem(UNKNOWN, why, literal.span, help)
         elif not known:
             yield from self._never_added(reader, adders)
+
+    def _keeps(self, name: str, adders: Sequence[Adder]) -> bool:
+        """Return whether agents have a belief from their own programs, and no program removes or replaces it."""
+        is_own = all(each.how in ("fact", "step", "message") for each in adders)
+        return self._is_closed and is_own and self._removed.isdisjoint(("", name))
 
     def _never_added(self, reader: Reader, adders: Mapping[str, Sequence[Adder]]) -> Iterator[Diagnostic]:
         (name, size), literal = reader.key, reader.literal
@@ -201,7 +212,7 @@ class _BeliefCheck:
     def _to_be_added(self, literal: nodes.Literal, shipped: str) -> str:
         if shipped:
             return f"`{shipped}` has it: run and check with `--mapping {shipped}`"
-        written = format_term(nodes.replace(literal, annotations=None))
+        written = as_written(nodes.replace(literal, annotations=None))
         mapped = ", or check with its `--mapping FILE`" if self._is_lone else ""
         return f"add it in a plan (`+{written}`), or at the beginning (`{written}.`){mapped}"
 
@@ -228,7 +239,8 @@ def _of_other_size(name: str, adders: Sequence[Adder], read: Set[int]) -> Iterat
     for each in adders if used else ():
         if each.size not in read and each.literal is not None and is_own(each.literal):
             others = ", ".join(f"`{name}/{size}`" for size in sorted(read))
-            message = f"belief `{name}/{each.size}` is added, but only {others} is read"
+            what = "has a plan `+?`" if each.how == "plan" else "is added"
+            message = f"belief `{name}/{each.size}` {what}, but only {others} is read"
             texts = [other.literal for other in adders if other.size in used and other.literal is not None]
             help = did_you_mean(map(format_term, texts[:1]))
             yield problem(UNKNOWN, message, each.literal.span, help or None)
