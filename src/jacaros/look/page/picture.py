@@ -6,6 +6,7 @@ It suits light and dark pages, needs no other files, and is identical for identi
 import html
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -70,6 +71,17 @@ def picture_svg(recording: Recording, width: int = 640) -> str:
         f'height="{sheet.height}" role="img" aria-label="{title}">\n<title>{title}</title>\n'
         f"<style>{_STYLE}</style>\n" + "\n".join(parts) + "\n</svg>\n"
     )
+
+
+@dataclass(frozen=True, repr=False)
+class Picture:
+    """A recording as a picture in a notebook, *width* pixels wide: put ``Picture(recording)`` at the end of a cell."""
+
+    recording: Recording
+    width: int = 640
+
+    def _repr_svg_(self) -> str:
+        return picture_svg(self.recording, self.width)
 
 
 class _Sheet:

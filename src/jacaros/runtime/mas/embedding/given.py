@@ -6,7 +6,7 @@ given                                             meaning
 ``"check_in(ann)"``                               text of the language
 ``"check_in(Who)", Who="Ann, O'Hara"``            text, with values for its variables
 ``"check_in", "Ann, O'Hara"``                     a name and its arguments
-``("check_in", "Ann, O'Hara")``                   the same as one object
+``("check_in", "Ann, O'Hara")``                   the same as one object; as content of a message, a list
 `Structure`, `Atom`, `Literal`, `LiteralText`     itself
 a dataclass or named tuple                        its structure, see `jacaros.artifacts.env.values.plain`
 ================================================  ==========================================================
@@ -15,7 +15,7 @@ a dataclass or named tuple                        its structure, see `jacaros.ar
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any
 
 from jacaros.agents.body.values import symbol_of
 from jacaros.agents.language import nodes
@@ -29,8 +29,6 @@ from jacaros.artifacts.env.values import Atom, plain
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.files.texts import suggestion
 
-T = TypeVar("T")
-
 
 class LiteralText(str):
     """A belief or goal as text. Given to an agent again, it is exactly this literal, whatever its strings contain."""
@@ -40,7 +38,6 @@ class LiteralText(str):
     term: Term
 
     def __new__(cls, term: Term) -> "LiteralText":
-        """Write *term*."""
         written = super().__new__(cls, text(term))
         written.term = term
         return written
@@ -79,8 +76,7 @@ def read_given(
 
     Raises:
         AslError: the text has errors.
-        UsageError: a text with arguments is not a name, a value has no variable, or data is not a literal, while *parse*
-            is not `parse_term`.
+        UsageError: arguments follow a text that is not a name, a value has no variable, or data is not a literal.
         ValueError: a value contains itself, or is nested deeper than 200 levels.
     """
     if type(given) is str and not arguments:
@@ -89,8 +85,12 @@ def read_given(
         raise UsageError(
             f"unexpected keyword `{name}`: only variables of a text without arguments have values"
         )
-    term = _of_data(given, arguments)
-    if parse is not parse_term and functor_of(term) is None:
+    is_literal = parse is not parse_term
+    if is_literal and type(given) is tuple and given and not arguments:
+        term = _structure(*given)
+    else:
+        term = _structure(given, *arguments) if arguments else _value(given)
+    if is_literal and functor_of(term) is None:
         raise UsageError(f"expected a literal, found {text(term)}")
     return Given(term, text(term), Variables())
 
@@ -109,18 +109,14 @@ def _of_text(written: str, values: Mapping[str, object], parse: Callable[[str], 
     return Given(term, text(term) if values else written, names)
 
 
-def _of_data(given: object, arguments: Sequence[object]) -> Term:
-    if type(given) is tuple and given and not arguments:
-        given, *arguments = given
-        given = given if arguments else Atom(given)
-    if not arguments:
-        return rename(given.term) if isinstance(given, LiteralText) else _value(given)
-    if not _is_name(given):
+def _structure(name: object, *arguments: object) -> Term:
+    if not _is_name(name):
         raise UsageError(
-            f"expected a name before the arguments, found `{given}`\n"
+            f"expected a name before the arguments, found `{name}`\n"
             "  = help: to give values to the variables of a text, name them: X=..."
         )
-    return (symbol_of(str(given), len(arguments)), *map(_value, arguments))
+    symbol = symbol_of(str(name), len(arguments))
+    return (symbol, *map(_value, arguments)) if arguments else symbol
 
 
 def _is_name(given: object) -> bool:
@@ -130,7 +126,9 @@ def _is_name(given: object) -> bool:
 
 def _value(value: object) -> Term:
     """Return the term of a value. Lists may contain literals, like contents of messages."""
-    if type(value) is list and any(isinstance(each, Literal) for each in value):
+    if isinstance(value, LiteralText):
+        return rename(value.term)
+    if type(value) is list and any(isinstance(each, (Literal, LiteralText)) for each in value):
         return make_list(map(_value, value))
     return term_of(value if isinstance(value, Literal) else plain(value))
 
@@ -138,12 +136,12 @@ def _value(value: object) -> Term:
 # Before names took arguments, positions had other meanings. A text that is not a name shows that they are meant.
 
 
-def by_position(given: object, arguments: tuple[object, ...], name: str, default: T) -> tuple[Any, T]:
+def by_position(given: object, arguments: tuple[object, ...], name: str, default: Any) -> tuple[Any, Any]:
     """Return the arguments of *given*, and the value of an option that older programs pass by position."""
     if len(arguments) != 1 or _is_name(given):
         return arguments, default
     warnings.warn(f"pass {name} by keyword: {name}=...", DeprecationWarning, stacklevel=3)
-    return (), arguments[0]  # type: ignore[return-value]
+    return (), arguments[0]
 
 
 def each_given(given: object, arguments: tuple[object, ...], values: Mapping[str, object]) -> list[Given]:

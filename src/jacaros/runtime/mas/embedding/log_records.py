@@ -4,7 +4,9 @@ import logging
 import re
 
 _LOGGER = logging.getLogger("jacaros")
-_LINE = re.compile(r"(?:\[(?P<agent>\S+)\] )?(?:(?:debug|info|warning|error): )?(?P<text>.*)", re.DOTALL)
+_LINE = re.compile(
+    r"(?P<prefix>\[(?P<agent>\S+)\] )?(?:(?:debug|info|warning|error): )?(?P<text>.*)", re.DOTALL
+)
 
 
 def logging_configured() -> bool:
@@ -23,6 +25,5 @@ def log_record(line: str, level: str) -> None:
     """
     found = _LINE.fullmatch(line)
     assert found is not None, "every line fits"
-    agent = found["agent"] or ""
-    prefix = f"[{agent}] " if agent else ""
-    _LOGGER.log(getattr(logging, level.upper()), "%s%s", prefix, found["text"], extra={"agent": agent})
+    message = (found["prefix"] or "") + found["text"]
+    _LOGGER.log(getattr(logging, level.upper()), "%s", message, extra={"agent": found["agent"] or ""})

@@ -84,8 +84,7 @@ class Mailbox(Arrivals[Message]):
 
         Raises:
             UnknownAgent: no participant has this name.
-            AslError: the text is not a term.
-            UsageError: as for `RunningAgent.add_belief`.
+            AslError, UsageError: as for `RunningAgent.add_belief`.
         """
         arguments, reply_to = by_position(content, arguments, "reply_to", reply_to)
         said = read_given(content, arguments, values, parse_term).term

@@ -19,6 +19,7 @@ from jacaros.runtime.mas.console import StandardConsole, entered, place_of_fault
 from jacaros.runtime.mas.deployment import AgentSpec, Deployment, FocusSpec
 from jacaros.runtime.mas.embedding.given import by_position
 from jacaros.runtime.mas.embedding.log_records import log_record, logging_configured
+from jacaros.runtime.mas.embedding.notebook import system_html
 from jacaros.runtime.mas.embedding.running_agent import RunningAgent
 from jacaros.runtime.mas.embedding.waits import RunEnded, RunWaits, UnknownAgent
 from jacaros.runtime.mas.launch import chosen_clock, in_fleet, load_deployment, mapped
@@ -306,6 +307,10 @@ class Mas:
     async def sleep(self, seconds: float) -> None:
         """Wait for this number of seconds of the run's clock."""
         await self.clock.sleep(seconds)
+
+    def _repr_html_(self) -> str:
+        hosts = () if self._begun is None else self._begun[0].directory
+        return system_html(repr(self), [(host.name, host.mind) for host in hosts])
 
     def __repr__(self) -> str:
         if self._begun is None:

@@ -37,6 +37,7 @@ from jacaros.agents.terms.values import (
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.mas.agents.host import AgentHost
 from jacaros.runtime.mas.embedding.given import Given, LiteralText, by_position, each_given, read_given
+from jacaros.runtime.mas.embedding.notebook import agent_html
 from jacaros.runtime.mas.embedding.waits import AgentEnded, GoalFailed, RunWaits
 
 
@@ -136,8 +137,7 @@ class OpenMind:
             arguments, values: as for `add_belief`.
 
         Raises:
-            AslError: the text is not a formula.
-            UsageError: as for `add_belief`.
+            AslError, UsageError: as for `add_belief`.
         """
         return list(self._answers(read_given(formula, arguments, values, parse_formula)))
 
@@ -340,6 +340,9 @@ class RunningAgent(OpenMind):
         """Kill the agent: its operations are cancelled, other agents continue."""
         if not self.ended:
             self._end(self._host)
+
+    def _repr_html_(self) -> str:
+        return agent_html(repr(self), self._host.mind)
 
     def __repr__(self) -> str:
         return f"<agent {self.name}{' (ended)' if self.ended else ''}>"

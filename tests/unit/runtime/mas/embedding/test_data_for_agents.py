@@ -138,7 +138,7 @@ async def test_goals_and_waits_take_data(mas: Mas) -> None:
 
 async def test_messages_take_data_and_are_passed_on(mas: Mas, lines: list[str]) -> None:
     me, other = mas.mailbox("me"), mas.mailbox("other")
-    mas.add_agent("bob", 'age("O\'Hara", 30). +!fetch(X)[source(S)] <- .send(S, tell, X).')
+    bob = mas.add_agent("bob", 'age("O\'Hara", 30). +!fetch(X)[source(S)] <- .send(S, tell, X).')
     sent: list[Any] = [
         "a, b",
         Atom("a"),
@@ -154,8 +154,10 @@ async def test_messages_take_data_and_are_passed_on(mas: Mas, lines: list[str]) 
         passed = await other.get(timeout=1)
         assert passed.content == message.content
         assert str(passed) == str(message).replace("bob", "me")
-    me.send("bob", "achieve", ("fetch", "a, b"))
-    assert (await me.get(timeout=1)).content == "a, b"
+    me.send("bob", "achieve", "fetch", bob.beliefs[0])
+    assert (await me.get(timeout=1)).content == bob.beliefs[0].literal
+    me.send("other", "tell", (1, "a, b"))
+    assert (await other.get(timeout=1)).content == [1, "a, b"], "as anywhere among values"
     assert await me.ask("bob", "age(Who, N)", Who="O'Hara") == {"N": 30}
     assert await me.ask("bob", "age", "O'Hara", None) == {}
     assert await me.ask("bob", "age", "O'Hara", 31) is None
@@ -203,6 +205,12 @@ def _ring() -> list[object]:
             r"no variable `parcel`\n.*write `Parcel` in the text",
         ),
         (lambda a: a.achieve("p", 1, X=2), UsageError, "unexpected keyword `X`"),
+        (lambda a: a.achieve((3,)), UsageError, "expected a name before the arguments, found `3`"),
+        (
+            lambda a: a.achieve(("p(X)", 1)),
+            UsageError,
+            r"expected a name before the arguments, found `p\(X\)`",
+        ),
         (lambda a: a.achieve(3), UsageError, "expected a literal, found 3"),
         (lambda a: a.achieve(["p"]), UsageError, r'expected a literal, found \["p"\]'),
         (lambda a: a.ask(()), UsageError, r"expected a literal, found \[\]"),
