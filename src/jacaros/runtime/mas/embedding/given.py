@@ -23,7 +23,7 @@ from jacaros.agents.language.loader import parse_literal, parse_term
 from jacaros.agents.language.lowering import Variables, lower
 from jacaros.agents.python.agent import Literal, literal_of, term_of
 from jacaros.agents.terms.substitution import rename, resolve
-from jacaros.agents.terms.text import text
+from jacaros.agents.terms.text import excerpt, text
 from jacaros.agents.terms.values import Term, functor_of, make_list
 from jacaros.artifacts.env.values import Atom, plain
 from jacaros.runtime.errors import UsageError
@@ -57,13 +57,18 @@ class Given:
 
     Attributes:
         term: the term, which shares no variable with others.
-        text: for messages: as given, or the text of the term.
+        written: the text that was given, or empty.
         unknown: its variables without a value, by name.
     """
 
     term: Term
-    text: str
+    written: str
     unknown: Variables
+
+    @property
+    def text(self) -> str:
+        """The text for messages."""
+        return self.written or text(excerpt(self.term))
 
 
 def read_given(
@@ -91,8 +96,8 @@ def read_given(
     else:
         term = _structure(given, *arguments) if arguments else _value(given)
     if is_literal and functor_of(term) is None:
-        raise UsageError(f"expected a literal, found {text(term)}")
-    return Given(term, text(term), Variables())
+        raise UsageError(f"expected a literal, found {text(excerpt(term))}")
+    return Given(term, "", Variables())
 
 
 def _of_text(written: str, values: Mapping[str, object], parse: Callable[[str], nodes.Term]) -> Given:
@@ -105,8 +110,7 @@ def _of_text(written: str, values: Mapping[str, object], parse: Callable[[str], 
             help = suggestion(wanted, names, otherwise)
             raise UsageError(f"`{written}` has no variable `{name}`\n  = help: {help}")
         names.pop(name).ref = _value(value)
-    term = resolve(term)
-    return Given(term, text(term) if values else written, names)
+    return Given(resolve(term), "" if values else written, names)
 
 
 def _structure(name: object, *arguments: object) -> Term:

@@ -42,7 +42,7 @@ class GoalFailed(JacarosError):
     """An awaited goal failed without a plan for its failure, or was dropped.
 
     Attributes:
-        goal: the goal as it was given.
+        goal: the goal as text.
         message: the message of the failure.
         reasons: its terms as plain values (see `jacaros.artifacts.env.values`), such as ``error(no_relevant)``.
     """
