@@ -103,7 +103,8 @@ def check_view(address: str, token: str | None) -> None:
             "the page needs websockets 15 or later, which is not installed",
             "pip install 'websockets>=15', or --view=terminal, or --record RUN.jsonl",
         )
-    from jacaros.look.page.live.access import SHORTEST_TOKEN, Access
+    from jacaros.look.page.live.access import Access
+    from jacaros.serving.access import SHORTEST_TOKEN
 
     if Access(address, token).exposed and token is None:
         raise usage_error(

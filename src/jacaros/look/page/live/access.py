@@ -1,29 +1,18 @@
-"""What a request may get: access control by the token in the path, the host names and the origin, and the page's files.
+"""What a request may get: access control by the token in the path, and the page's files.
 
-The token keeps out other users and programs of the machine. Checking host names prevents DNS rebinding, in which a foreign
-page reaches this server under its own name. Checking the origin stops scripts of other pages.
+The token keeps out other users and programs of the machine.
 """
 
 import hmac
-import ipaddress
-import re
 import secrets
-import socket
-from collections.abc import Mapping, Sequence
-from urllib.parse import urlsplit
+from collections.abc import Mapping
 
 from jacaros.look.page.page import STATIC
 from jacaros.runtime.errors import UsageError
-
-LOOPBACK = "127.0.0.1"
-SHORTEST_TOKEN = 16
-"""Minimum length of a token chosen by the user."""
-_TOKEN = re.compile(r"[A-Za-z0-9._~-]+")
-_HOST = re.compile(r"(\[[0-9A-Fa-f:.]+\]|[A-Za-z0-9._-]+)(:[0-9]{1,5})?")
-_HERE = frozenset({"127.0.0.1", "localhost", "::1"})
+from jacaros.serving.access import LOOPBACK, SHORTEST_TOKEN, Hosts, is_token
 
 
-class Access:
+class Access(Hosts):
     """Access rules of one server.
 
     Args:
@@ -38,58 +27,18 @@ class Access:
     """
 
     def __init__(self, address: str = LOOPBACK, token: str | None = None) -> None:
+        super().__init__(address)
         self.token = token if token is not None else secrets.token_urlsafe(24)
-        if len(self.token) < SHORTEST_TOKEN or not _TOKEN.fullmatch(self.token):
+        if not is_token(self.token):
             raise UsageError(
                 f"error: invalid view token\n  = help: use at least {SHORTEST_TOKEN} letters, digits or any of `-._~`"
             )
-        self._address = address
-
-    @property
-    def exposed(self) -> bool:
-        """Whether other machines can reach the server."""
-        return not _is_loopback(self._address)
 
     def path(self, target: str) -> str | None:
         """Return what follows the token in the target of a request, without its query; None with another token."""
         given, _, rest = target.partition("?")[0].removeprefix("/").partition("/")
         right = hmac.compare_digest(given.encode("utf-8", "replace"), self.token.encode())
         return rest if right else None
-
-    def knows_host(self, given: Sequence[str]) -> bool:
-        """Return whether the values of the header Host name this machine; the port may be that of a tunnel."""
-        if len(given) != 1 or (found := _HOST.fullmatch(given[0])) is None:
-            return False
-        name = found[1].strip("[]").lower()
-        if name in _HERE or name == self._address.lower():
-            return True
-        is_any = self._address in ("0.0.0.0", "::", "")
-        return is_any and (_is_number(name) or name == socket.gethostname().lower())
-
-    def knows_origin(self, given: Sequence[str], host: str) -> bool:
-        """Return whether a request comes from our own page, or from a program other than a browser (no Origin)."""
-        if not given:
-            return True
-        try:
-            parts = urlsplit(given[0])
-        except ValueError:
-            return False
-        return len(given) == 1 and parts.scheme in ("http", "https") and parts.netloc.lower() == host.lower()
-
-
-def _is_loopback(address: str) -> bool:
-    if address == "localhost":
-        return True
-    return _is_number(address) and ipaddress.ip_address(address).is_loopback
-
-
-def _is_number(name: str) -> bool:
-    """Return whether a host name is an IP address, which DNS cannot redirect."""
-    try:
-        ipaddress.ip_address(name)
-    except ValueError:
-        return False
-    return True
 
 
 # ---- files

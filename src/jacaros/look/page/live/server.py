@@ -19,12 +19,12 @@ from websockets.datastructures import Headers
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
-from jacaros.look.page.live.access import LOOPBACK, Access, Pages, security_headers
+from jacaros.look.page.live.access import Access, Pages, security_headers
 from jacaros.look.page.live.delivery import Delivery, json_text
 from jacaros.look.page.live.live_view import LiveView
 from jacaros.look.page.live.timing import Allowance, Allowances, Beat, metered
 from jacaros.runtime.clock import real_time
-from jacaros.runtime.errors import UsageError
+from jacaros.serving.access import LOOPBACK, listening_socket
 
 LIVE = "live"
 """Path of the WebSocket below the token."""
@@ -53,20 +53,9 @@ GARBAGE = 10
 
 
 def bound_socket(address: str = LOOPBACK, port: int = 0) -> socket.socket:
-    """Return a listening socket; port 0 selects a free port.
-
-    Raises:
-        UsageError: the address is not an address of this machine, or the port is in use.
-    """
-    family = socket.AF_INET6 if ":" in address else socket.AF_INET
-    try:
-        return socket.create_server((address, port), family=family, backlog=CONNECTIONS)
-    except (OSError, OverflowError) as error:
-        why = error.strerror if isinstance(error, OSError) else "the port must be in 0 to 65535"
-        raise UsageError(
-            f"error: cannot serve the view at {address}:{port}: {why}\n"
-            "  = help: choose another --view-port or --view-address"
-        ) from None
+    """Return a listening socket for pages; port 0 selects a free port."""
+    help = "choose another --view-port or --view-address"
+    return listening_socket("the view", address, port, help, CONNECTIONS)
 
 
 class LiveServer:
