@@ -19,6 +19,7 @@ from collections.abc import Callable
 from typing import Any
 
 from peer_actions import ActionCommands
+from peer_agents import AgentCommands
 from peer_graph import GraphCommands
 
 from jacaros.robots.kit.connection import Matching
@@ -46,11 +47,12 @@ class Causes:
         pass
 
 
-class Peer(ActionCommands, GraphCommands):
+class Peer(ActionCommands, AgentCommands, GraphCommands):
     """A node and what it has seen.  Every method without underscore is a command; all values are JSON."""
 
     def __init__(self, kind: str, clock: Clock, name: str, namespace: str = "", **options: Any) -> None:
         ActionCommands.__init__(self)
+        AgentCommands.__init__(self)
         GraphCommands.__init__(self)
         self._clock = clock
         self._lines: list[str] = []
@@ -78,6 +80,7 @@ class Peer(ActionCommands, GraphCommands):
         await self._backend.start()
 
     async def close(self) -> None:
+        await self.end_agents()
         await self._backend.close()
 
     def debug(self) -> None:

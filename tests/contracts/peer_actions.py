@@ -141,6 +141,10 @@ class ActionCommands:
         """Numbers of the feedback so far."""
         return [message["current"] for message in self._feedback[key]]
 
+    def told(self, key: str) -> list[Any]:
+        """Feedback so far."""
+        return self._feedback[key]
+
     async def outcome(self, key: str, timeout: float | None = None) -> dict[str, Any]:
         outcome = await self._goals[key].outcome(timeout)
         return {"status": str(outcome.status), "result": plain(outcome.result), "text": outcome.text}

@@ -18,6 +18,7 @@ from jacaros.robots.mapping.fields import (
     read_namespace,
     value_names,
 )
+from jacaros.robots.mapping.offers import OfferPart, read_offers
 from jacaros.robots.mapping.operations import OperationKind, OperationPart, read_operation
 from jacaros.robots.mapping.properties import (
     DerivedPart,
@@ -121,11 +122,15 @@ class MappingFile:
         file: its name, as shown in messages.
         text: its text, for excerpts.
         artifacts: by name, in the order of the file.
+        offers: what agents offer, by name; see `jacaros.robots.mapping.offers`.
+        roles: roles of all callers in the graph; empty for the usual one.
     """
 
     file: str
     text: str = field(repr=False)
     artifacts: dict[str, ArtifactPart] = field(default_factory=dict)
+    offers: dict[str, OfferPart] = field(default_factory=dict)
+    roles: tuple[str, ...] = ()
 
     def where(self, place: FilePosition) -> str:
         """Format a position for the log."""
@@ -153,7 +158,7 @@ def find_mapping(name: str, folders: Sequence[Path] = (Path(),)) -> Path | None:
 
 def is_mapping(path: Path) -> bool:
     """Return whether a YAML file is a mapping file, even a faulty one: it declares artifacts or parts of one."""
-    return bool(top_keys(path) & {"artifacts", "properties", "signals", "operations"})
+    return bool(top_keys(path) & {"artifacts", "properties", "signals", "operations", "offers"})
 
 
 def load_mapping(path: Path) -> MappingFile:
@@ -181,8 +186,8 @@ def read_with_problems(path: Path) -> tuple[MappingFile, list[Problem]]:
     if wrong is not None:
         return MappingFile(name, text), [wrong]
     problems: list[Problem] = []
-    artifacts = _read(read_document(text, problems, "a mapping file"), path, problems)
-    return MappingFile(name, text, artifacts), sorted(problems, key=lambda each: (each.line, each.column))
+    parts = _read(read_document(text, problems, "a mapping file"), path, problems)
+    return MappingFile(name, text, *parts), sorted(problems, key=lambda each: (each.line, each.column))
 
 
 def _shown(path: Path) -> str:
@@ -198,20 +203,38 @@ def read_mapping(text: str, name: str = "mapping.yaml") -> MappingFile:
         MappingError: with all its mistakes.
     """
     problems: list[Problem] = []
-    artifacts = _read(read_document(text, problems, "a mapping file"), Path(name), problems)
+    parts = _read(read_document(text, problems, "a mapping file"), Path(name), problems)
     if problems:
         raise MappingError(name, text, problems)
-    return MappingFile(name, text, artifacts)
+    return MappingFile(name, text, *parts)
 
 
-def _read(document: YamlNode, path: Path, problems: list[Problem]) -> dict[str, ArtifactPart]:
+_OF_FILE = ("offers", "roles")
+"""Keys of a whole file, beside those of an artifact."""
+_Parts = tuple[dict[str, ArtifactPart], dict[str, OfferPart], tuple[str, ...]]
+
+
+def _read(document: YamlNode, path: Path, problems: list[Problem]) -> _Parts:
+    if document.value is None and not problems:
+        document.wrong("the file is empty", "begin with properties: or operations:")
     if document.value is None:
-        if not problems:
-            document.wrong("the file is empty", "begin with properties: or operations:")
-        return {}
+        return {}, {}, ()
+    of_file = {
+        key.value: value
+        for key, value in (document.entries() if isinstance(document.value, dict) else ())
+        if key.value in _OF_FILE
+    }
+    offers = read_offers(of_file["offers"]) if "offers" in of_file else {}
+    roles = tuple(each.text() for each in each_of(of_file["roles"])) if "roles" in of_file else ()
+    if of_file and not set(document.value) - {*_OF_FILE}:
+        return {}, offers, roles
+    return _artifacts(document, path, problems), offers, roles
+
+
+def _artifacts(document: YamlNode, path: Path, problems: list[Problem]) -> dict[str, ArtifactPart]:
     if not isinstance(document.value, dict) or "artifacts" not in document.value:
         return {path.stem: _artifact(path.stem, START, document, path.parent)}
-    entries = document.mapping("artifacts", *_KEYS, anchors=True)
+    entries = document.mapping("artifacts", *_KEYS, *_OF_FILE, anchors=True)
     for name, _ in document.entries():
         if name.value in _KEYS and name.value != "interfaces":
             text = f"`{name.value}` is on the same level as `artifacts`"
@@ -246,7 +269,7 @@ def _artifact(
 ) -> ArtifactPart:
     part = ArtifactPart(name, place, interfaces=shared)
     found = values(
-        node.mapping(*_KEYS, anchors=True),
+        node.mapping(*_KEYS, *(_OF_FILE if place == START else ()), anchors=True),
         part,
         interfaces=lambda folders, _: (*shared, *_interfaces(folders, folder)),
     )

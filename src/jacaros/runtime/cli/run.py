@@ -3,7 +3,7 @@
 import asyncio
 import shlex
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -99,6 +99,15 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 )
 @graph_options
 @orphans_option
+@option(
+    "--offer",
+    "Offer in the ROS graph what the agents offer: goals as actions, beliefs as topics, questions as services (default: if "
+    "a mapping file has `offers`).",
+)
+@option(
+    "--lifecycle",
+    "Make the node a managed one (ROS 2): the agents wait for the transitions `configure` and `activate`.",
+)
 @fleet_options
 @parameter_options
 @option(
@@ -139,6 +148,8 @@ def command(
     param: tuple[str, ...],
     params_file: tuple[Path, ...],
     quiet: bool,
+    offer: bool,
+    lifecycle: bool,
     explained: tuple[str, ...],
     node: str | None,
     all_nodes: bool,
@@ -179,6 +190,8 @@ def command(
             clock = "ros"
         options = replace(options, parameters=parameters)
     options = replace(options, fast=clock == "fast", ros_clock=clock == "ros")
+    if lifecycle and options.ros not in ("memory", "ros2"):
+        raise usage_error("--lifecycle needs a ROS 2 graph", "add --ros ros2")
     if all_nodes:
         options.check()
         return _run_nodes(project, outputs, options.fleet_keys)
@@ -189,7 +202,8 @@ def command(
         console.log(each)
     code = 1
     try:
-        code = _launch(project, options, console, outputs, explained)
+        open_doors = partial(_open_to_ros, offer=offer, lifecycle=lifecycle)
+        code = _launch(project, options, console, outputs, explained, open_doors)
         return code
     finally:
         _close(console, code)
@@ -218,8 +232,10 @@ def _launch(
     console: StandardConsole,
     outputs: RequestedOutputs,
     explained: Sequence[str] = (),
+    open_doors: Callable[[System], None] = lambda _: None,
 ) -> int:
     def begin(mas: System) -> None:
+        open_doors(mas)
         if sys.stdin is not None:  # otherwise the descriptor 0 may be another file
             mas.input = LineInput()
         if explained:
@@ -249,6 +265,24 @@ def _launch(
     with Watching(console, outputs) as watching, console.with_prints():
         code = launch(project, options, watching, begin_watched, join=join)
     return code or int(watching.incomplete)
+
+
+def _open_to_ros(mas: System, offer: bool, lifecycle: bool) -> None:
+    """Offer in the ROS graph what the agents offer, and serve the lifecycle of the node, where wanted."""
+    if not offer and mas.has_environment and (mas.options.mappings or mas.deployment.workspaces):
+        from jacaros.runtime.mas.mappings import files_with_offers  # here: most runs have no mappings
+
+        offer = bool(files_with_offers(mas.deployment, mas.options.mappings))
+    if not (offer or lifecycle):
+        return
+    from jacaros.serving.ros.opening import open_door  # here: few runs are open to the graph
+
+    if lifecycle:
+        from jacaros.serving.ros.lifecycle import Lifecycle
+
+        Lifecycle(mas, partial(open_door, mas) if offer else None)
+    else:
+        open_door(mas)
 
 
 def report_idleness(mas: System) -> None:

@@ -14,13 +14,16 @@ from jacaros.robots.mapping.file import (
     shipped_mappings,
 )
 from jacaros.robots.mapping.interfaces import stored_interfaces
+from jacaros.robots.mapping.offer_codec import offer_problems
 from jacaros.runtime.files.texts import suggestion
-from jacaros.runtime.files.yaml import Problem
+from jacaros.runtime.files.yaml import Problem, top_keys
 from jacaros.runtime.mas.deployment import ArtifactSpec, Deployment, FocusSpec, ProjectError, WorkspaceSpec
 
 MAIN = "main"
 """The workspace of mapped artifacts."""
 
+SUFFIXES = (".yaml", ".yml")
+"""Suffixes of mapping files."""
 WRONG = "wrong-mapping"
 WRONG_WORLD = "wrong-world"
 UNKNOWN_TYPE = "unknown-message-type"
@@ -83,7 +86,7 @@ def check_mapping_file(path: Path, beside: Sequence[Path] = ()) -> list[Diagnost
         each
         for part in mapping.artifacts.values()
         for each in type_problems(part, stored_interfaces(part.interfaces))
-    ]
+    ] + offer_problems(mapping.offers, stored_interfaces())
     problems += [each for each in uncertain if each.line not in wrong]
     # Another artifact of the robot may have the property; an alias repeats a problem.
     misspelt = [
@@ -151,3 +154,16 @@ def with_mappings(deployment: Deployment, names: Sequence[str]) -> Deployment:
     filled = replace(main, artifacts=(*artifacts, *main.artifacts))
     spaces = [filled if each is main else each for each in (spaces if mains else [main, *spaces])]
     return replace(deployment, agents=agents, workspaces=tuple(spaces), artifact_environment=True)
+
+
+def files_with_offers(deployment: Deployment, names: Iterable[str | Path]) -> list[Path]:
+    """Return the mapping files of a run that say what its agents offer in the ROS graph.
+
+    Args:
+        deployment: the project.
+        names: further mapping files.
+    """
+    types = [artifact.type_name for workspace in deployment.workspaces for artifact in workspace.artifacts]
+    files = [each.partition("#")[0] for each in (*map(str, names), *types)]
+    found = [find_mapping(each, (Path(), deployment.base_path)) for each in files if each.endswith(SUFFIXES)]
+    return [path for path in dict.fromkeys(found) if path is not None and "offers" in top_keys(path)]
