@@ -4,7 +4,7 @@ So twelve hours of patrol and one failure are two tales. `Rank` orders them by w
 """
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import Any, Literal, NamedTuple
@@ -31,8 +31,6 @@ _SIGNALS = 128
 """Exit codes from here on mean that a signal ended the run, such as that of Ctrl+C (130)."""
 
 Level = Literal["error", "warning", "note"]
-Key = tuple[str, Any]
-"""An agent and its intention."""
 
 
 class Rank(IntEnum):
@@ -116,20 +114,28 @@ class Tale:
 
 
 @dataclass
-class _Pursuit:
-    """An open root goal of an intention: its goals by number, and its tale."""
+class _Intention:
+    """An open intention.
 
-    stack: dict[Any, str]
-    tale: Tale
+    Attributes:
+        goals: its goals by number, the root goal first.
+        tale: that of its root goal.
+        failed: goals that failed together by number, the inner ones first, at *failed_at* because of *why*.
+        is_suspended: whether its root goal is.
+    """
 
-
-@dataclass
-class _Failure:
-    """The goals of an intention that failed together by number, the inner ones first."""
-
-    t: float
-    why: str
     goals: dict[Any, str] = field(default_factory=dict)
+    tale: Tale | None = None
+    failed: dict[Any, str] = field(default_factory=dict)
+    failed_at: float = 0.0
+    why: str = ""
+    is_suspended: bool = False
+
+    @property
+    def wanted(self) -> str:
+        """Its root goal."""
+        mark = " (suspended)" if self.is_suspended else ""
+        return f"`{shown(next(iter(self.goals.values())))}`{mark}"
 
 
 class Teller:
@@ -137,47 +143,41 @@ class Teller:
 
     def __init__(self) -> None:
         self._tales: dict[tuple[str, str], Tale] = {}
-        self._pursuits: dict[Key, _Pursuit] = {}
-        self._failures: dict[Key, _Failure] = {}
-        self._suspended: dict[Key, Tale] = {}
-        self._over: dict[Key, float] = {}
-        """When suspended intentions ended."""
-        self._open: dict[str, set[Any]] = {}
+        self._open: dict[str, dict[Any, _Intention]] = {}
+        """The open intentions of each agent."""
         self._idle: dict[str, float] = {}
-        """Since when agents have no intention; those that have one are in *_open*."""
+        """Since when agents without an intention have none."""
         self._dropped: list[tuple[float, str, str]] = []
         self._warnings: list[tuple[float, Data]] = []
-        self._take: Mapping[str, Callable[[float, Data], None]] = {
-            "goal": self._goal,
-            "intention": self._intention,
-            "log": self._log,
-            "agent": self._agent,
-            "member": self._member,
-            "believed": self._believed,
-            "fault": self._fault,
-            "property": self._property,
-        }
 
     def take(self, t: float, event: str, data: Data) -> None:
         """Take the next record."""
         is_other = event == "property" and data.get("name") != "question"
-        kind = _KINDS.get(event)
-        if is_other or not (event in self._take or (kind and kind.text)) or not is_well_formed(event, data):
+        if is_other or event not in _TAKEN or not is_well_formed(event, data):
             return
-        if event in self._take:
-            self._take[event](t, data)
-        elif kind is not None:
-            self._tell(event, t, kind.text.format_map(data), robot=str(data.get("robot") or ""))
+        match event:
+            case "goal":
+                self._goal(t, data)
+            case "intention" if data["state"] == "over":
+                self._close(t, data["agent"], data["id"])
+            case "intention":
+                self._open.setdefault(data["agent"], {}).setdefault(data["id"], _Intention())
+            case "agent":
+                self._agent(t, data["agent"], data["state"])
+            case "log":
+                self._warnings += [(t, data)] if data["level"] in ("warning", "error") else []
+            case _:
+                self._happening(t, event, data)
 
     def tales(self, past: Past, is_over: bool = True) -> list[Tale]:
         """Return all tales; *past* has the programs, and how the run ended."""
-        for key, failure in self._failures.items():
-            self._fail(key, failure)
+        for agent, key, intention in self._intentions():
+            if intention.failed:
+                self._close(intention.failed_at, agent, key)
+            elif intention.tale is not None:
+                intention.tale.last = past.end
+                intention.tale.states.add("open")
         self._tell_warnings()
-        for pursuit in self._pursuits.values():
-            pursuit.tale.last = past.end
-            pursuit.tale.states.add("open")
-        self._tell_suspended(past)
         pursuits = [each for each in self._tales.values() if each.goals]
         pursuits.sort(key=lambda each: each.weight)
         for each in pursuits[:MOST_PURSUITS]:
@@ -200,88 +200,63 @@ class Teller:
 
     # ---- goals
 
+    def _intentions(self) -> Iterator[tuple[str, Any, _Intention]]:
+        for agent, found in self._open.items():
+            for key, intention in [*found.items()]:
+                yield agent, key, intention
+
     def _goal(self, t: float, data: Data) -> None:
-        state, goal, number = data["state"], data["goal"], data.get("id")
-        key: Key = data["agent"], data.get("intention") or f"goal {number}"
-        failure = self._failures.get(key)
-        if failure is not None and (state != "failed" or t > failure.t):
-            del self._failures[key]
+        state, goal, number, agent = data["state"], data["goal"], data.get("id"), data["agent"]
+        key = data.get("intention") or f"goal {number}"
+        mine = self._open.get(agent, {}).get(key)
+        if mine is not None and mine.failed and (state != "failed" or t > mine.failed_at):
             # A goal with a plan for its failure is pursued again.
-            is_handled = number in failure.goals and state in ("pursued", "recovered")
-            self._fail(key, failure, is_handled)
-        if state == "pursued":
-            self._begin(t, key, number, goal)
-        elif state == "failed":
-            self._failures.setdefault(key, _Failure(t, data.get("why") or "")).goals[number] = goal
-        elif state == "suspended":
-            self._suspend(t, key, number)
-        elif state == "resumed":
-            if key in self._suspended:
-                self._suspended.pop(key).last = t
-        else:
-            self._close(t, key, number, state)
-
-    def _begin(self, t: float, key: Key, number: Any, goal: str) -> None:
-        self._open.setdefault(key[0], set()).add(key[1])
-        if key not in self._pursuits:
-            tale = self._tell("goal", t, "", key[0], about=name_of(goal))
-            tale.goals[goal] = None
-            self._pursuits[key] = _Pursuit({}, tale)
-        self._pursuits[key].stack[number] = goal
-
-    def _close(self, t: float, key: Key, number: Any, state: str) -> None:
-        pursuit = self._pursuits.get(key)
-        if pursuit is None or number not in pursuit.stack:
+            if number in mine.failed and state in ("pursued", "recovered"):
+                self._tell_failure(agent, mine, "handled")
+            else:
+                self._close(mine.failed_at, agent, key)
+                mine = None
+        if mine is None and state in ("pursued", "failed"):
+            mine = self._open.setdefault(agent, {}).setdefault(key, _Intention())
+        if mine is None:
             return
-        if number == next(iter(pursuit.stack)):
+        if state == "failed":
+            mine.failed[number] = goal
+            mine.failed_at, mine.why = t, mine.why or data.get("why") or ""
+        elif state == "pursued":
+            if mine.tale is None:
+                mine.tale = self._tell("goal", t, "", agent, about=name_of(goal))
+                mine.tale.goals[goal] = None
+            mine.goals[number] = goal
+        elif number == next(iter(mine.goals), None):
+            mine.is_suspended = state == "suspended" or (mine.is_suspended and state == "dropped")
             if state == "dropped":
-                self._dropped.append((t, key[0], pursuit.stack[number]))
-            self._end_intention(t, key, state)
-        else:
-            del pursuit.stack[number]
+                self._dropped.append((t, agent, mine.wanted))
+            if state not in ("suspended", "resumed"):
+                self._close(t, agent, key, state)
+        elif state not in ("suspended", "resumed"):
+            mine.goals.pop(number, None)
 
-    def _suspend(self, t: float, key: Key, number: Any) -> None:
-        pursuit = self._pursuits.get(key)
-        if pursuit is not None and number == next(iter(pursuit.stack)):
-            told = f"`!{name_of(pursuit.stack[number])}` was suspended"
-            self._suspended[key] = self._tell("suspended", t, told, key[0])
+    def _close(self, t: float, agent: str, key: Any, state: str = "") -> None:
+        mine = self._open.get(agent, {}).pop(key, None)
+        if mine is None:
+            return
+        if mine.failed:
+            self._tell_failure(agent, mine, "lost")
+        if mine.tale is not None:
+            mine.tale.last = t
+            mine.tale.states.update({state} - {"replaced"})
+        if not self._open[agent]:
+            self._idle[agent] = t
 
-    def _tell_suspended(self, past: Past) -> None:
-        """Warn of agents all of whose goals were suspended at the end: nothing was left to resume them."""
-        left = [key for key in self._suspended if past.end - self._over.get(key, past.end) <= AT_ONCE]
-        suspended, wanted = [agent for agent, _ in left], [agent for agent, _ in self._wanted(past)]
-        for key in left:
-            if suspended.count(key[0]) == wanted.count(key[0]):
-                tale = self._suspended[key]
-                tale.rank, tale.level, tale.last = Rank.TROUBLE, "warning", past.end
-
-    def _end_intention(self, t: float, key: Key, state: str = "") -> None:
-        pursuit = self._pursuits.pop(key, None)
-        if pursuit is not None:
-            pursuit.tale.last = t
-            pursuit.tale.states.update({state} - {"replaced"})
-        if key in self._suspended:
-            self._over[key] = self._suspended[key].last = t
-        intentions = self._open.get(key[0], set())
-        intentions.discard(key[1])
-        if not intentions:
-            self._idle[key[0]] = t
-
-    def _fail(self, key: Key, failure: _Failure, is_handled: bool = False) -> None:
-        because, goal = reason(failure.why), [*failure.goals.values()][-1]
+    def _tell_failure(self, agent: str, failed: _Intention, kind: Literal["handled", "lost"]) -> None:
+        because, goal = reason(failed.why), [*failed.failed.values()][-1]
         told = f"`{cut(shown(goal), LONGEST)}` failed{f': {because}' if because else ''}"
-        if is_handled:
-            # Consecutive goals that fail for one reason are one tale.
-            self._tell("handled", failure.t, f"{told}; a plan handled it", key[0], about=_pattern(because))
-        else:
-            self._tell("lost", failure.t, told, key[0], about=f"{name_of(goal)} {_pattern(because)}")
-            self._end_intention(failure.t, key)
-
-    def _intention(self, t: float, data: Data) -> None:
-        if data["state"] == "over":
-            self._end_intention(t, (data["agent"], data["id"]))
-        else:
-            self._open.setdefault(data["agent"], set()).add(data["id"])
+        # Consecutive goals that fail for one reason, and are handled, are one tale.
+        about = _pattern(because) if kind == "handled" else f"{name_of(goal)} {_pattern(because)}"
+        told += "; a plan handled it" if kind == "handled" else ""
+        self._tell(kind, failed.failed_at, told, agent, about=about)
+        failed.failed, failed.why = {}, ""
 
     # ---- the rest of the run
 
@@ -296,51 +271,43 @@ class Teller:
             who, text = (found[1], found[2]) if found is not None else ("", data["text"].partition("\n")[0])
             if is_loss:
                 text = f"{text.partition(_LOST)[0]}: {reason(text)}"
-            self._tell(
-                "error" if is_loss else data["level"], t, cut(text, LONGEST), who, about=_pattern(text)
-            )
+            level = "error" if is_loss else data["level"]
+            self._tell(level, t, cut(text, LONGEST), who, about=_pattern(text))
 
-    def _log(self, t: float, data: Data) -> None:
-        if data["level"] in ("warning", "error"):
-            self._warnings.append((t, data))
-
-    def _agent(self, t: float, data: Data) -> None:
-        if data["state"] == "ended":
-            self._open.pop(data["agent"], None)
-            self._idle.pop(data["agent"], None)
+    def _agent(self, t: float, agent: str, state: str) -> None:
+        if state == "ended":
+            for key in [*self._open.get(agent, ())]:
+                self._close(t, agent, key, "dropped")
+            self._idle.pop(agent, None)
         else:
-            self._idle.setdefault(data["agent"], t)
+            self._idle.setdefault(agent, t)
 
-    def _member(self, t: float, data: Data) -> None:
-        if data["state"] == "lost":
-            self._tell("member", t, _KINDS["member"].text, data["member"], about=data["member"])
-
-    def _fault(self, t: float, data: Data) -> None:
-        text = f"fault `{data['fault']}` ({data['kind'].replace('_', ' ')})"
-        if data["state"] != "ends":
-            self._tell("fault", t, text, robot=str(data.get("robot") or ""))
-        elif (begun := self._tales.get(("fault", text))) is not None:
-            begun.last = t
-
-    def _believed(self, t: float, data: Data) -> None:
-        """Tell of a robot that is wrong about its pose. The record is repeated while it is, then once without a pose."""
-        if data.get("x") is not None:
-            tale = self._tell("believed", t, _KINDS["believed"].text, robot=data["robot"])
-            tale.count = 1
-            if tale.last - tale.t >= LONG:
-                tale.rank, tale.level = Rank.TROUBLE, "warning"
-
-    def _property(self, t: float, data: Data) -> None:
-        """Tell of a question to a person: the values are its number, its text and the options."""
-        if len(data["values"] or ()) > 1:
-            self._tell("property", t, f"a person was asked: {cut(str(data['values'][1]), LONGEST)}")
+    def _happening(self, t: float, event: str, data: Data) -> None:
+        """Tell what happened to a robot, the fleet or the run."""
+        text, robot = _KINDS[event].text.format_map(data), str(data.get("robot") or "")
+        match event:
+            case "member":
+                if data["state"] == "lost":
+                    self._tell(event, t, text, data["member"], about=data["member"])
+            case "fault":
+                text = text.replace("_", " ")
+                if data["state"] == "ends" and (event, text) in self._tales:
+                    self._tales[event, text].last = t
+                elif data["state"] != "ends":
+                    self._tell(event, t, text, robot=robot)
+            case "believed":  # repeated while it is wrong, then once without a pose
+                if data.get("x") is not None:
+                    tale = self._tell(event, t, text, robot=robot)
+                    tale.count = 1
+                    if tale.last - tale.t >= LONG:
+                        tale.rank, tale.level = Rank.TROUBLE, "warning"
+            case "property":  # the values of a question are its number, its text and the options
+                if len(data["values"] or ()) > 1:
+                    self._tell(event, t, f"{text}{cut(str(data['values'][1]), LONGEST)}")
+            case _:
+                self._tell(event, t, text, robot=robot)
 
     # ---- the end
-
-    def _wanted(self, past: Past) -> list[tuple[str, str]]:
-        """Return the goals that the end of the run took from agents, or that were open then."""
-        dropped = [(agent, goal) for t, agent, goal in self._dropped if past.end - t <= AT_ONCE]
-        return dropped + [(key[0], next(iter(each.stack.values()))) for key, each in self._pursuits.items()]
 
     def _end(self, past: Past, is_over: bool) -> Tale:
         code, step = past.exit_code, ending_step(past)
@@ -355,17 +322,22 @@ class Teller:
         silent = {each: past.end - t for each, t in self._idle.items() if not self._open.get(each)}
         quiet = [each for each, passed in silent.items() if passed >= (AT_ONCE if each in lost else LONG)]
         lost.intersection_update(quiet)
-        ended = self._wanted(past)
-        if idle := [each for each in quiet if each in lost] or (quiet if not ended else []):
+        # The end of the run takes goals from agents.
+        wanted = [(agent, goal) for t, agent, goal in self._dropped if past.end - t <= AT_ONCE]
+        wanted += [(agent, each.wanted) for agent, _, each in self._intentions() if each.goals]
+        if idle := [each for each in quiet if each in lost] or (quiet if not wanted else []):
             since = min(silent[each] for each in idle)
             parts.append(f"{_names(idle)} had no goal for the last {_duration(since)}")
-        if ended:
-            agents = len({agent for agent, _ in ended})
+        if wanted:
+            agents = len({agent for agent, _ in wanted})
             by = f" by {agents} agents" if agents > 1 else ""
             what = "still wanted" if is_over else "pursued"
-            parts.append(f"{what}{by}: {_names(sorted({f'`{shown(goal)}`' for _, goal in ended}))}")
+            parts.append(f"{what}{by}: {_names(sorted({goal for _, goal in wanted}))}")
         level: Level = "error" if lost or 0 < (code or 0) < _SIGNALS else "note"
-        return Tale(Rank.END, past.end, "; ".join(parts), "warning" if cut_off else level)
+        is_stuck = is_over and wanted and all(goal.endswith("(suspended)") for _, goal in wanted)
+        if cut_off or (is_stuck and level == "note"):
+            level = "warning"
+        return Tale(Rank.END, past.end, "; ".join(parts), level)
 
 
 class _Kind(NamedTuple):
@@ -382,15 +354,14 @@ class _Kind(NamedTuple):
 
 _KINDS: Mapping[str, _Kind] = {
     "goal": _Kind(Rank.ROUTINE, "note", lasts=True),
-    "suspended": _Kind(Rank.ROUTINE, "note", lasts=True),
     "handled": _Kind(Rank.HANDLED, "warning"),
     "lost": _Kind(Rank.LOSS, "error"),
     "warning": _Kind(Rank.TROUBLE, "warning"),
     "error": _Kind(Rank.LOSS, "error"),
     "member": _Kind(Rank.FAULT, "error", "did not answer; it is a system of the fleet"),
-    "fault": _Kind(Rank.FAULT, "warning", lasts=True),
+    "fault": _Kind(Rank.FAULT, "warning", "fault `{fault}` ({kind})", lasts=True),
     "believed": _Kind(Rank.ROUTINE, "note", "was not where it believed to be", lasts=True),
-    "property": _Kind(Rank.FAULT, "warning"),
+    "property": _Kind(Rank.FAULT, "warning", "a person was asked: "),
     "intervention": _Kind(Rank.FAULT, "note", "you changed the run: {what}"),
     "battery_empty": _Kind(Rank.LOSS, "error", "the battery is empty"),
     "fell": _Kind(Rank.LOSS, "error", "fell down a cliff"),
@@ -400,6 +371,9 @@ _KINDS: Mapping[str, _Kind] = {
     "charged": _Kind(Rank.ROUTINE, "note", "charged its battery"),
     "task": _Kind(Rank.ROUTINE, "note", "did {task}"),
 }
+
+_TAKEN = {each for each, kind in _KINDS.items() if kind.text} | {"goal", "intention", "agent", "log"}
+"""Records that tales are made of."""
 
 _LOST = " failed and has no plan for its failure"
 _WARNING = re.compile(r"\[([^\]]+)\] (?:warning: |error: )?(.*)")
