@@ -2,8 +2,6 @@ import { themeColor } from "./elements.js";
 
 const DASHES = [5, 4];
 const HALF_TURN = 180;  // degrees: 180 and -180 are the same heading
-const COARSE = 1000;  // numbers of a line that are looked at for a place
-const PLACES = 12, STAY = 8, MANY = 40;  // of labels of thresholds: places along the line, and parts of curves that a better one saves
 const MARKS = {
   failure: ["▲", "bad"], handled: ["△", "bad"], task: ["●", "accent"], docked: ["■", "dock"], intervention: ["◆", "person"], pause: ["‖", "muted"],
 };
@@ -11,7 +9,7 @@ const MARKS = {
 /** Draws curves, their axes and thresholds, and marks, with a pen on a canvas. */
 export class CurveDrawing {
   constructor(pen, axis, { top, bottom, end }) {
-    Object.assign(this, { pen, axis, top, bottom, end, lines: [] });
+    Object.assign(this, { pen, axis, top, bottom, end, labels: [] });
     pen.font = "11px system-ui, sans-serif";
     pen.textBaseline = "middle";
     pen.lineJoin = "bevel";
@@ -55,7 +53,6 @@ export class CurveDrawing {
       line.push(x(points[i]), scale.y(points[i + 1] * factor));
     }
     if (source.isStep && points[length - 2] >= source.track.times.at(-1)) line.push(x(this.end), line.at(-1));
-    this.lines.push(line);
     this.line(line, color, dashes, isDense || dashes.length ? 1 : 1.5);
   }
 
@@ -84,39 +81,18 @@ export class CurveDrawing {
     return value >= scale.low && value <= scale.high ? y : NaN;
   }
 
-  /** Write the label of a threshold at the height `y` where it hides the least; it stays at its place in `last` unless another is much better. */
-  thresholdLabel(text, y, color, last) {
-    const { pen, axis } = this, width = pen.measureText(text).width + 8, step = Math.max(0, axis.width - width - 8) / (PLACES - 1), found = [];
-    for (const middle of [y - 8, y + 9]) {
-      for (let n = 0; n < PLACES && middle > this.top && middle < this.bottom; n++) {
-        const x = axis.left + 4 + n * step, box = [x, middle - 7, x + width, middle + 7], place = `${n} ${middle < y}`;
-        found.push({ x, box, middle, place, cost: this.hiddenBy(box) - (last.get(text) === place ? STAY : 0) });
-      }
-    }
-    if (!found.length) return;
-    const { x, box: [left, top, right, bottom], middle, place } = found.reduce((best, each) => (each.cost < best.cost ? each : best));
-    last.set(text, place);
-    for (let n = 0; n < MANY; n++) this.lines.push([left, top, right, bottom]);  // other labels go elsewhere
+  /** Write the label of a threshold above its line at the height `y`, to the right of the labels that are there. */
+  thresholdLabel(text, y, color) {
+    const { pen, labels } = this, width = pen.measureText(text).width + 8, middle = y - 8 > this.top ? y - 8 : y + 9;
+    const left = Math.max(this.axis.left + 4, ...labels.filter((each) => Math.abs(each.middle - middle) < 14).map(({ right }) => right));
+    labels.push({ middle, right: left + width + 4 });
     pen.globalAlpha = 0.8;
     pen.fillStyle = themeColor("surface");
-    pen.fillRect(left, top, width, 14);
+    pen.fillRect(left, middle - 7, width, 14);
     pen.globalAlpha = 1;
     pen.textAlign = "left";
     pen.fillStyle = color;
-    pen.fillText(text, x + 4, middle);
-  }
-
-  /** How many parts of curves are in a box. */
-  hiddenBy([left, top, right, bottom]) {
-    let count = 0;
-    for (const line of this.lines) {
-      const step = 2 * Math.ceil(line.length / COARSE);
-      for (let i = step; i < line.length; i += step) {
-        const x = line[i - step], y = line[i - step + 1], u = line[i], v = line[i + 1];
-        if (x < right && u > left && Math.min(y, v) < bottom && Math.max(y, v) > top) count += 1;
-      }
-    }
-    return count;
+    pen.fillText(text, left + 4, middle);
   }
 
   /** A line down the plot for each mark, with its sign on top. */

@@ -18,7 +18,7 @@ const NEAR = 6;  // pixels between the pointer and a mark
 export class CurvesView {
   constructor(root, context, { sources, thresholds, log }) {
     Object.assign(this, { root, context, sources, thresholds, log, axis: context.axis, choice: context.curves });
-    Object.assign(this, { series: new Map(), places: new Map() });
+    this.series = new Map();
     this.chips = element("ul", "chips");
     this.more = element("select", "more");
     this.more.setAttribute("aria-label", "Add a curve");
@@ -115,7 +115,7 @@ export class CurvesView {
     }
     for (const curve of curves) drawing.curve(curve, scales[curve.side], curve.color);
     // Robots of one program have the same thresholds.
-    for (const label of new Map(labels.map((each) => [`${each[0]} ${each[1]}`, each])).values()) drawing.thresholdLabel(...label, this.places);
+    for (const label of new Map(labels.map((each) => [`${each[0]} ${each[1]}`, each])).values()) drawing.thresholdLabel(...label);
   }
 
   seriesOf(source) {

@@ -3,7 +3,6 @@ import { KIND } from "./lanes_bars.js";
 import { fitted } from "./time_canvas.js";
 
 const MERGED = 4, NEAR = 7;  // pixels: bars, and marks, that fit into them come together
-const SHADES = 4;  // of strips
 const LETTER = 6.03;  // pixels of a letter of the font
 const FONT = "10px ui-monospace, Menlo, Consolas, 'DejaVu Sans Mono', monospace";
 const COLOURS = ["accent", "accent", "warn", "muted", "good", "bad", "bad", "warn"];  // by kind
@@ -50,12 +49,12 @@ export class LanesDrawing {
   }
 
   drawBars(row) {
-    const { axis, scene } = this, { bars } = row, run = { root: null, from: 0, to: 0 }, strip = { from: 0, to: 0, kind: 0, part: 0 };
+    const { axis, scene } = this, { bars } = row, run = { root: null, from: 0, to: 0 };
     bars.each(axis.from, axis.to, MERGED * axis.grain, (first, end, sums) => {
       const from = axis.x(bars.starts[first]), to = Math.max(from + 1, axis.x(Math.min(scene.end, bars.ends[end - 1])));
       if (end - first > 1) {
         if (run.root) this.label(row, run);
-        this.addStrip(row, strip, from, to, sums);
+        this.drawStrip(row, from, to, sums);
         return;
       }
       const what = bars.whats[first], root = what.root ?? what;
@@ -68,7 +67,6 @@ export class LanesDrawing {
       run.to = to;
     });
     this.label(row, run);
-    this.drawStrip(row, strip);
   }
 
   drawBar({ y, height }, kind, from, to) {
@@ -87,26 +85,11 @@ export class LanesDrawing {
     }
   }
 
-  /** Bars that are too narrow: the kind that took most of the time, and how much of it was taken; equal neighbours are one strip. */
-  addStrip(row, strip, from, to, sums) {
-    let kind = 0, all = 0;
-    for (let each = 0; each < sums.length; each++) {
-      all += sums[each];
-      if (sums[each] > sums[kind]) kind = each;
-    }
-    const part = Math.ceil(SHADES * Math.min(1, all / ((to - from) * this.axis.grain))) / SHADES;
-    if (strip.kind !== kind || strip.part !== part || from - strip.to > 1) {
-      this.drawStrip(row, strip);
-      Object.assign(strip, { kind, part, from });
-    }
-    strip.to = to;
-  }
-
-  drawStrip({ y, height }, { from, to, kind, part }) {
-    if (to <= from) return;
-    const { pen } = this;
+  /** Bars that are too narrow: the kind that took most of the time, and how much of it was taken. */
+  drawStrip({ y, height }, from, to, sums) {
+    const { pen } = this, kind = sums.indexOf(Math.max(...sums)), all = sums.reduce((one, other) => one + other);
     pen.fillStyle = this.colours[kind];
-    pen.globalAlpha = SOLID[kind] * (0.3 + 0.7 * part);
+    pen.globalAlpha = SOLID[kind] * (0.3 + 0.7 * Math.min(1, all / ((to - from) * this.axis.grain)));
     pen.fillRect(from, y, to - from, height);
     pen.globalAlpha = 1;
   }
