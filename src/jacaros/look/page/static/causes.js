@@ -1,16 +1,15 @@
-import { indexAt } from "./track.js";
+import { Track } from "./track.js";
 
 const LONGEST = 2000;  // links of a chain: rounds of a loop are folded where it is shown
 const MOST = 120;  // effects that are shown
-const LIMIT = 100000;  // links that are kept: a live page may be open for days
+const LIMIT = 80000;  // links that are kept: a live page may be open for days
 
 /** The links between what happened: by id, back to what led to one, and forward to what it led to. */
 export class Causes {
   constructor() {
     this.links = new Map();
     this.effects = new Map();  // by id: the ids of the links that it led to directly
-    this.times = [];  // of the links, in the order in which they came
-    this.order = [];
+    this.order = new Track(LIMIT);  // the ids in the order in which the links came
   }
 
   add(t, event, data) {
@@ -29,19 +28,11 @@ export class Causes {
       return;
     }
     this.links.set(link.id, link);
-    this.times.push(Math.max(link.t, this.times[this.times.length - 1] ?? 0));
-    this.order.push(link.id);
     if (link.parent) {
       if (!this.effects.has(link.parent)) this.effects.set(link.parent, []);
       this.effects.get(link.parent).push(link.id);
     }
-    if (this.order.length > LIMIT) this.drop(LIMIT >> 2);
-  }
-
-  /** Drop the oldest links. */
-  drop(count) {
-    this.times.splice(0, count);
-    for (const id of this.order.splice(0, count)) {
+    for (const id of this.order.add(Math.max(link.t, this.order.times.at(-1) ?? 0), link.id)) {
       this.links.delete(id);
       this.effects.delete(id);
     }
@@ -102,8 +93,8 @@ export class Causes {
   /** The last links up to time `t` that `fits` accepts, the newest first. */
   last(t, count, fits) {
     const found = [];
-    for (let i = indexAt(this.times, t); i >= 0 && found.length < count; i--) {
-      const link = this.links.get(this.order[i]);
+    for (let i = this.order.countAt(t) - 1; i >= 0 && found.length < count; i--) {
+      const link = this.links.get(this.order.values[i]);
       if (fits(link)) found.push(link);
     }
     return found;

@@ -1,5 +1,5 @@
 import { Fold } from "./fold.js";
-import { Track, indexAt } from "./track.js";
+import { Track } from "./track.js";
 
 const RECENT = 2;  // seconds during which a new value is a recent one
 const LIMIT = 5000;  // operations of one artifact that are kept
@@ -42,9 +42,8 @@ export class Artifact {
     this.observers = new Fold(changeObserver);
     this.running = new Fold(changeOperation);
     this.signals = new Fold(() => {});
-    this.operations = new Map();  // by id
-    this.began = [];  // operations in the order in which they began
-    this.beganTimes = [];
+    this.operations = new Track(LIMIT);  // in the order in which they began
+    this.open = new Map();  // operations that run, by id
   }
 
   add(t, event, data) { TAKE[event](this, t, data); }
@@ -62,8 +61,8 @@ export class Artifact {
 
   /** The last `count` operations that began up to time `t`, the newest first, with their outcome at `t`. */
   lastOperations(t, count) {
-    const end = indexAt(this.beganTimes, t) + 1;
-    return this.began.slice(Math.max(0, end - count), end).reverse().map((each) => outcomeAt(each, t));
+    const end = this.operations.countAt(t);
+    return this.operations.values.slice(Math.max(0, end - count), end).reverse().map((each) => outcomeAt(each, t));
   }
 
   lastSignals(t, count) {
@@ -94,16 +93,12 @@ const TAKE = {
   operation(artifact, t, data) {
     if (data.state === "began") {
       const made = { ...data, began: t, ended: Infinity, outcome: "runs" };
-      artifact.operations.set(data.id, made);
-      artifact.began.push(made);
-      artifact.beganTimes.push(t);
+      artifact.operations.add(t, made);
+      artifact.open.set(data.id, made);
+    } else if (artifact.open.has(data.id)) {
+      Object.assign(artifact.open.get(data.id), { ended: t, outcome: data.state, reason: data.reason });
+      artifact.open.delete(data.id);
     }
-    if (artifact.began.length > LIMIT) {
-      artifact.beganTimes.splice(0, LIMIT >> 2);
-      for (const { id } of artifact.began.splice(0, LIMIT >> 2)) artifact.operations.delete(id);
-    }
-    const known = artifact.operations.get(data.id);
-    if (known && data.state !== "began") Object.assign(known, { ended: t, outcome: data.state, reason: data.reason });
     artifact.running.add(t, { ...data, t });
   },
 };

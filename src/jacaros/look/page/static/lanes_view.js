@@ -5,7 +5,6 @@ import { LanesDrawing } from "./lanes_drawing.js";
 import { barLines } from "./lanes_words.js";
 import { planName, shortName } from "./link_words.js";
 import { TimePointer } from "./time_pointer.js";
-import { indexAt } from "./track.js";
 
 const NEAR = 5;  // pixels around a bar, or a mark, in which it is pointed at
 const THIN = 3;  // pixels around an arrow
@@ -45,7 +44,7 @@ export class LanesView {
 
   show() {
     const { axis, root, lanes, context } = this, { clientWidth: width, clientHeight: height, scrollTop: top } = root, { selection, run } = context;
-    const stamp = [axis.from, axis.to, axis.width, width, height, top, lanes.version, this.messages.all.length, JSON.stringify(selection.current), isDark(),
+    const stamp = [axis.from, axis.to, axis.width, width, height, top, lanes.version, this.messages.sent.values.at(-1)?.id, JSON.stringify(selection.current), isDark(),
       [...this.open], this.current?.row.key, this.current?.index].join(" ");
     if (stamp === this.stamp || height < 2) return;
     this.stamp = stamp;
@@ -101,7 +100,7 @@ export class LanesView {
   /** Messages in view between agents that have lanes, with the heights of these. */
   arrows() {
     const { messages, axis } = this, heights = new Map(this.rows.filter(({ lane }) => lane).map(({ label, y, height }) => [label, y + height / 2]));
-    return messages.all.slice(indexAt(messages.times, axis.from) + 1, indexAt(messages.times, axis.to) + 1)
+    return messages.sent.between(axis.from, axis.to)
       .map((message) => ({ message, from: heights.get(message.from), to: heights.get(message.to), x: axis.x(message.sent), end: axis.x(Math.min(message.read, message.sent + 5 * axis.grain)) }))
       .filter(({ from, to }) => from !== undefined && to !== undefined && from !== to);
   }

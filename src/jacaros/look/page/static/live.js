@@ -1,15 +1,16 @@
+import { Changing } from "./changing.js";
 import { startPage, fragment } from "./main.js";
 
 const FIRST_WAIT = 0.5, LONGEST_WAIT = 10;  // seconds before the page connects again
 
 /** What the page asks of the run, over the socket. */
-class Commands {
+class Commands extends Changing {
   constructor() {
+    super();
     this.can = new Set();
     this.socket = null;
     this.number = 0;
     this.waiting = new Map();
-    this.listeners = [];
   }
 
   /** Send a command; the promise has the result, or fails with the reason in words. */
@@ -28,7 +29,7 @@ class Commands {
 
   allow(names) {
     this.can = new Set(names);
-    for (const listener of this.listeners) listener();
+    this.notify();
   }
 
   disconnect() {
@@ -37,8 +38,6 @@ class Commands {
     this.waiting.clear();
     this.allow([]);
   }
-
-  onChange(listener) { this.listeners.push(listener); }
 }
 
 /** Connects the page with a run, again and again until the run has ended. */

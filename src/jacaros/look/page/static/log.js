@@ -1,16 +1,15 @@
 import { Failures } from "./failures.js";
-import { indexAt } from "./track.js";
+import { Track } from "./track.js";
 import { inWords, markText, sortOf, toneOf } from "./happenings.js";
 
-const LINES = 100000;  // that are kept: a live page may be open for days
+const LINES = 80000;  // that are kept: a live page may be open for days
 const MARKS = 20000;
 
 /** What agents printed and what happened, in the order of time; and the marks of the timeline. */
 export class Log {
   constructor() {
     this.debugState = "running";
-    this.times = [];
-    this.entries = [];  // t, who (an agent or ""), text, sort, robot
+    this.entries = new Track(LINES);  // t, who (an agent or ""), text, sort, robot
     this.marks = [];  // t, sort, text, and the selection that it leads to
     this.robots = new Set();
     this.failures = new Failures();
@@ -49,16 +48,7 @@ export class Log {
     return found;
   }
 
-  enter(entry) {
-    this.times.push(entry.t);
-    this.entries.push(entry);
-    if (this.entries.length <= LINES) return;
-    this.times.splice(0, LINES >> 2);
-    this.entries.splice(0, LINES >> 2);
-  }
-
-  /** How many entries there are up to time `t`. */
-  countAt(t) { return indexAt(this.times, t) + 1; }
+  enter(entry) { this.entries.add(entry.t, entry); }
 }
 
 /** The agent and the text of a line of the log, such as "[guard] warning: the goal !go failed". */

@@ -18,10 +18,10 @@ export class LogView {
     this.list.addEventListener("keydown", (event) => this.press(event));
   }
 
-  get empty() { return this.log.entries.length === 0; }
+  get empty() { return !this.log.entries.times.length; }
 
   show(t) {
-    const count = this.log.countAt(t);
+    const count = this.log.entries.countAt(t);
     if (count === this.count) return;
     const atEnd = this.list.scrollTop >= (this.end ?? 0) - 30;
     const first = Math.max(0, count - PAGE * this.pages);
@@ -51,7 +51,7 @@ export class LogView {
 
   append(from, to) {
     this.isReplaced = false;
-    this.list.append(...this.log.entries.slice(from, to).map((entry) => this.line(entry)));
+    this.list.append(...this.log.entries.values.slice(from, to).map((entry) => this.line(entry)));
     // One line is reached by the tab key, the arrow keys move on from it.
     for (const line of this.list.querySelectorAll('button[tabindex="0"]')) line.tabIndex = -1;
     const last = this.list.lastElementChild?.querySelector("button");

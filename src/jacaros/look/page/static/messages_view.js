@@ -20,13 +20,13 @@ export class MessagesView {
     moveByArrows(this.list, ".message");
   }
 
-  get empty() { return this.messages.all.length === 0; }
+  get empty() { return !this.messages.sent.times.length; }
 
   show(t) {
     const { agent, cause } = this.context.selection.current;
     this.filter.hidden = agent === undefined;
     const shown = this.messages.last(t, ROWS, this.only.checked ? agent : undefined);
-    const stamp = `${this.messages.countAt(t)} ${shown.filter((each) => each.read <= t).length} ${this.only.checked ? agent : ""} ${cause}`;
+    const stamp = `${this.messages.sent.countAt(t)} ${shown.filter((each) => each.read <= t).length} ${this.only.checked ? agent : ""} ${cause}`;
     if (stamp === this.stamp) return;
     this.stamp = stamp;
     const atEnd = this.root.scrollTop + this.root.clientHeight >= this.root.scrollHeight - 40;

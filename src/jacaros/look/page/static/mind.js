@@ -1,6 +1,6 @@
 import { Fold } from "./fold.js";
 import { PlanUse } from "./plan_use.js";
-import { Track, indexAt } from "./track.js";
+import { Track } from "./track.js";
 
 const RECENT = 2;  // seconds during which a change of a belief is a recent one
 const DECISIONS = 20000;  // moments of deliberations that are kept
@@ -19,7 +19,7 @@ export class Mind {
     this.goals = new Fold(changeGoal);
     this.mailbox = new Fold(changeMailbox);
     this.use = new PlanUse();
-    this.decided = [];  // the moments of deliberations
+    this.decided = new Track(DECISIONS);
     this.ran = new Map();  // by file: the moments at which lines ran first
   }
 
@@ -83,7 +83,7 @@ export class Mind {
   mailboxAt(t) { return [...this.mailbox.at(t).values()]; }
 
   /** Number of deliberations up to time `t`. */
-  decisionsAt(t) { return indexAt(this.decided, t) + 1; }
+  decisionsAt(t) { return this.decided.countAt(t); }
 
   runLine(t, file, line) {
     if (!file || !line) return;
@@ -113,8 +113,7 @@ const TAKE = {
   },
   message(mind, t, data) { mind.mailbox.add(t, { ...data, t }); },
   deliberation(mind, t, data) {
-    mind.decided.push(t);
-    if (mind.decided.length > DECISIONS) mind.decided.splice(0, DECISIONS >> 2);
+    mind.decided.add(t, data.id);
     mind.use.add(t, data);
     const plan = mind.plan(data.chosen);
     if (plan) mind.runLine(t, plan.file, plan.line);

@@ -1,3 +1,4 @@
+import { Changing } from "./changing.js";
 import { VERSION } from "./schema.js";
 
 const FAULTS = 1000;
@@ -8,15 +9,15 @@ const FAULTS = 1000;
  * A model is an object with `add(t, event, data)`. The event is that of a record of kind "event"; the other kinds arrive
  * as "world" (the drawing), "frame" (the rows of robots) and "text" ({agent, text}).
  */
-export class Run {
+export class Run extends Changing {
   constructor(models) {
+    super();
     this.models = models;
     this.end = 0;  // seconds: the time of the last record
     this.count = 0;  // records so far
     this.over = false;  // the run has ended
     this.faults = [];  // what models could not take, in words
     this.version = VERSION;  // of the recording
-    this.listeners = new Set();
   }
 
   /** What users should know about the records: that some are not shown, in words; "" when all is well. */
@@ -31,7 +32,7 @@ export class Run {
   /** Take records, oldest first, then notify the listeners once. */
   addAll(records) {
     for (const record of records) this.take(record);
-    for (const listener of this.listeners) listener();
+    this.notify();
   }
 
   take(record) {
@@ -50,12 +51,6 @@ export class Run {
   /** One broken record must not hide the others. */
   reject(event, error) {
     if (this.faults.length < FAULTS) this.faults.push(`${event}: ${error.message}`);
-  }
-
-  /** Call `listener` after each batch of records; returns the function that ends this. */
-  onChange(listener) {
-    this.listeners.add(listener);
-    return () => this.listeners.delete(listener);
   }
 }
 

@@ -1,3 +1,5 @@
+import { Changing } from "./changing.js";
+
 const LAG = 0.15;  // seconds that the page is behind the run, so that robots glide from one sample to the next
 const JUMP = 3;  // seconds of lag that are made up for in one step
 
@@ -6,8 +8,9 @@ const JUMP = 3;  // seconds of lag that are made up for in one step
  *
  * `now`: seconds since the run began; `live`: follow the end of the run; `playing`: move on by itself, at `speed`.
  */
-export class Time {
+export class Time extends Changing {
   constructor(run, live) {
+    super();
     this.run = run;
     this.now = 0;
     this.live = live;
@@ -15,15 +18,7 @@ export class Time {
     this.lost = null;  // when the last message of a run came whose connection is lost, by Date.now()
     this.playing = false;
     this.speed = 1;
-    this.listeners = new Set();
   }
-
-  onChange(listener) {
-    this.listeners.add(listener);
-    return () => this.listeners.delete(listener);
-  }
-
-  notify() { for (const listener of this.listeners) listener(); }
 
   /** Show the moment `t`; a live page stops following the run. */
   go(t) {

@@ -1,3 +1,5 @@
+import { Changing } from "./changing.js";
+
 const LEAST = 0.01;  // seconds: the shortest range
 const SPAN = 120, SHORTEST = 10;  // seconds of a live run
 const EDGE = 0.9;  // part of the width at which a moment that moves is held
@@ -10,9 +12,10 @@ const STEPS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 30
  * `from`, `to`: seconds. `left`: pixels before the range, and `right` after it, for labels; `width`: pixels of the range. A recording is shown
  * whole, a live run with its last two minutes, until you zoom or pan.
  */
-export class TimeAxis {
+export class TimeAxis extends Changing {
   constructor(time) {
-    Object.assign(this, { time, from: 0, to: 1, left: 120, right: 12, width: 1, mode: "auto", listeners: new Set() });
+    super();
+    Object.assign(this, { time, from: 0, to: 1, left: 120, right: 12, width: 1, mode: "auto" });
     this.seen = 0;  // the moment at the last update
     this.wasLive = false;
   }
@@ -56,14 +59,6 @@ export class TimeAxis {
     this.mode = "auto";
     this.notify();
   }
-
-  /** Call `listener` after each change of the range by hand; returns the function that ends this. */
-  onChange(listener) {
-    this.listeners.add(listener);
-    return () => this.listeners.delete(listener);
-  }
-
-  notify() { for (const listener of this.listeners) listener(); }
 
   set(from, span) {
     const end = Math.max(this.time.run.end * 1.05, span);
