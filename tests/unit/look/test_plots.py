@@ -115,7 +115,7 @@ def test_a_plot_marks_failures_and_tells_handled_ones_apart() -> None:
     assert failed == [Failure(0.5, "!go", True), Failure(1.0, "!go", False)]
     svg = drawn(*named(all_series(RECORDING), "r2.x"), failed=failed)
     assert [len(marks(svg, kind)) for kind in ("handled", "failed")] == [2, 2]  # one each is in the legend
-    assert "!go failed, then handled" in [each.text for each in svg.iter(f"{SVG}text")]
+    assert "1 × !go failed, then handled" in [each.text for each in svg.iter(f"{SVG}text")]
 
 
 def test_texts_of_a_recording_cannot_break_a_plot() -> None:

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 from jacaros.look.out.limits import limits
 from jacaros.look.out.series import Series, named
 from jacaros.look.records.recording import Recording
+from jacaros.look.records.words import cut
 from jacaros.runtime.files.texts import printable
 
 _STYLE = """
@@ -206,12 +207,11 @@ def _path(sheet: _Sheet, scale: _Scale, series: Series) -> str:
     for x, values in _columns(sheet, series):
         for value in values:
             y = "" if math.isnan(value) else f"{scale.y(value):g}"
-            if math.isnan(before):
-                commands.append(f"M{x:g} {y}" if y else "")
-            elif series.is_stepped or not y:
-                commands.append(f"H{x:g}V{y}" if y else f"H{x:g}")
-            else:
-                commands.append(f"L{x:g} {y}")
+            if not math.isnan(before):
+                step = f"H{x:g}V{y}" if y else f"H{x:g}"
+                commands.append(step if series.is_stepped or not y else f"L{x:g} {y}")
+            elif y:
+                commands.append(f"M{x:g} {y}")
             before = value
     if not math.isnan(before):  # no record comes for what does not change
         commands.append(f"H{sheet.x(sheet.end):g}")
@@ -253,19 +253,12 @@ def _failures(sheet: _Sheet, failed: Sequence[Failure], bottom: int) -> Iterator
             if not is_handled:
                 yield f'<path class="failed faint" d="M{x} {_HEAD}V{bottom}"/>'
         if found:
-            text = f"{_counted(found)} {how}"
+            goals = {each.goal for each in found}
+            name = cut(goals.pop(), _MOST_SIGNS) if len(goals) == 1 else "goals"
+            text = f"{len(found)} × {name} {how}"
             yield _mark(kind, at + 4, bottom + 36) + _text(text, at + 14, bottom + 36, "start", "note")
             at = round(at + 34 + _GLYPH * len(text), 1)
 
 
 def _mark(kind: str, x: float, y: int) -> str:
     return f'<path class="{kind}" d="M{x} {y}l-4 -8h8z"/>'
-
-
-def _counted(failed: Sequence[Failure]) -> str:
-    """Return the goals that failed as text, such as ``2 × !go(dock)``; their number if they are different."""
-    names = [each.goal for each in failed]
-    if len(set(names)) != 1:
-        return f"{len(names)} goals"
-    name = names[0] if len(names[0]) <= _MOST_SIGNS else f"{names[0][: _MOST_SIGNS - 1]}…"
-    return name if len(names) == 1 else f"{len(names)} × {name}"
