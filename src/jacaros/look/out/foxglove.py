@@ -6,14 +6,12 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from heapq import merge
 from itertools import chain, count
-from typing import Any, BinaryIO, NamedTuple
+from typing import Any, BinaryIO
 
 from jacaros.look.out.limits import limits
-from jacaros.look.out.mcap_file import McapFile
+from jacaros.look.out.mcap_file import Message, write_messages
 from jacaros.look.out.series import ROBOT_FIELDS, all_series, samples
-from jacaros.look.records.line_format import encoded
 from jacaros.look.records.recording import Recording
-from jacaros.version import VERSION
 
 _WORLD = "map"
 """Frame of the world; the frame of each robot has the robot's name."""
@@ -22,26 +20,12 @@ _MOST_LANES = 30
 _ZERO = {"x": 0.0, "y": 0.0, "z": 0.0}
 
 
-class Message(NamedTuple):
-    """A message for Foxglove; all messages of a topic have the same schema."""
-
-    t: float
-    topic: str
-    schema: str
-    content: dict[str, Any]
-
-
 def write_mcap(recording: Recording, file: BinaryIO) -> dict[str, str]:
     """Write a recording to an empty file. Return the topics with their schemas. Times count from the start of the run."""
-    mcap, topics = McapFile(file, f"jacaros {VERSION}"), dict[str, str]()
     texts = (_log(t, agent, text, "info") for t, agent, text in recording.texts)
     lanes = _Lanes().messages(recording)
     streams = _numbers(recording), _poses(recording), texts, lanes, _sensed(recording)
-    for message in merge(*streams, key=lambda each: each.t):
-        topics[message.topic] = message.schema
-        mcap.add(max(0, round(message.t * 1e9)), *message[1:], encoded(message.content))
-    mcap.finish()
-    return topics
+    return write_messages(merge(*streams, key=lambda each: each.t), file)
 
 
 def _topic(*names: str) -> str:

@@ -1,9 +1,12 @@
 """MCAP files of JSON messages, written by the library ``mcap``, which the extra ``foxglove`` installs."""
 
 import json
-from typing import Any, BinaryIO
+from collections.abc import Iterable
+from typing import Any, BinaryIO, NamedTuple
 
+from jacaros.look.records.line_format import encoded
 from jacaros.runtime.errors import UsageError
+from jacaros.version import VERSION
 
 try:
     from mcap.writer import Writer
@@ -13,40 +16,34 @@ except ImportError:
     ) from None
 
 
-class McapFile:
-    """An MCAP file with a channel for each topic.
+class Message(NamedTuple):
+    """A message at *t* seconds; all messages of a topic have the same schema."""
 
-    Args:
-        file: empty file, which stays open.
-        library: name of the program that writes it.
+    t: float
+    topic: str
+    schema: str
+    content: dict[str, Any]
+
+
+def write_messages(messages: Iterable[Message], file: BinaryIO) -> dict[str, str]:
+    """Write messages to an empty file, which stays open. Return the topics with their schemas.
+
+    The first message of a schema defines its fields.
     """
-
-    def __init__(self, file: BinaryIO, library: str) -> None:
-        self._writer = Writer(file)
-        self._schemas: dict[str, int] = {}
-        self._channels: dict[str, int] = {}
-        self._writer.start(library=library)
-
-    def add(self, nanoseconds: int, topic: str, schema: str, message: dict[str, Any], data: bytes) -> None:
-        """Add a message.
-
-        Args:
-            nanoseconds: its time.
-            topic: its topic, whose messages all have the same schema.
-            schema: name of the schema.
-            message: its content, of which the first one of a schema defines the fields.
-            data: its content as JSON.
-        """
-        if schema not in self._schemas:
-            shape = json.dumps({"title": schema, **_shape(message)}).encode()
-            self._schemas[schema] = self._writer.register_schema(schema, "jsonschema", shape)
-        if topic not in self._channels:
-            self._channels[topic] = self._writer.register_channel(topic, "json", self._schemas[schema])
-        self._writer.add_message(self._channels[topic], nanoseconds, data, nanoseconds)
-
-    def finish(self) -> None:
-        """Write the rest and the index."""
-        self._writer.finish()  # type: ignore[no-untyped-call]
+    writer, topics = Writer(file), dict[str, str]()
+    schemas, channels = dict[str, int](), dict[str, int]()
+    writer.start(library=f"jacaros {VERSION}")
+    for t, topic, schema, content in messages:
+        if schema not in schemas:
+            shape = json.dumps({"title": schema, **_shape(content)}).encode()
+            schemas[schema] = writer.register_schema(schema, "jsonschema", shape)
+        if topic not in channels:
+            channels[topic] = writer.register_channel(topic, "json", schemas[schema])
+            topics[topic] = schema
+        nanoseconds = max(0, round(t * 1e9))
+        writer.add_message(channels[topic], nanoseconds, encoded(content), nanoseconds)
+    writer.finish()  # type: ignore[no-untyped-call]
+    return topics
 
 
 _TYPES = {bool: "boolean", int: "number", float: "number", str: "string"}
