@@ -54,14 +54,18 @@ export class Bars {
   }
 
   push(start, end, kind, what) {
-    const { starts, ends, kinds, whats, sums, limit } = this, excess = this.count > 1.25 * limit ? this.count - limit : 0;
-    for (const list of [starts, ends, kinds, whats]) list.splice(0, excess);
-    sums.splice(0, excess * KINDS);
+    const { starts, ends, kinds, whats, sums } = this;
+    if (this.count > 1.25 * this.limit) this.drop(this.count - this.limit);
     starts.push(start);
     ends.push(end);
     kinds.push(kind);
     whats.push(what);
-    sums.push(...sums.slice(-KINDS));
+    for (let kind = 0; kind < KINDS; kind++) sums.push(sums[sums.length - KINDS]);
+  }
+
+  drop(count) {
+    for (const list of [this.starts, this.ends, this.kinds, this.whats]) list.splice(0, count);
+    this.sums.splice(0, count * KINDS);
   }
 
   /** Count the newest bar. */
