@@ -120,7 +120,8 @@ async def test_a_page_open_for_days_drops_old_records(page) -> None:
             for (let n = 0; n < 30000; n++) run.take({ kind: "frame", t: n / 10, robots });
             for (let n = 0; n < 150000; n++) run.take({ kind: "text", t: n, agent: "a", text: "x" });
             const state = world.state(99, 2999.9);
-            return [world.times.length, world.columns[0].x.length, log.entries.values.length, log.entries.times.length, state.battery];
+            const lines = [log.entries.values.length, log.entries.times.length];
+            return [world.times.length, world.columns[0].x.length, ...lines, state.battery];
         })"""
     )
     frames, rows, lines, times, battery = kept
