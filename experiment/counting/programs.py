@@ -12,7 +12,7 @@ from counting.counts import CountedFile, Group, ProgramMetrics
 from counting.sources import PythonFile, Sources, counted
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic, SourceError, SourceFile
-from jacaros.agents.language.loader import read_program
+from jacaros.agents.language.loader import new_names, read_program
 from jacaros.robots.mapping.file import SHIPPED, find_mapping, is_mapping, read_with_problems
 from jacaros.robots.registry import type_finder
 from jacaros.robots.world.files.faults import fault_file_problems, is_fault_file
@@ -334,7 +334,7 @@ class ProgramFiles:
             return found, content
 
         file = SourceFile(path.as_posix(), text)
-        tree, problems = read_program(file, include, code.functions, code.actions)
+        tree, problems = read_program(file, include, new_names(code.functions, code.actions))
         program = AgentProgram(path, tree, frozenset(), tuple(problems))
         # Our replacements for files of other systems are read implicitly.
         implicit = {
