@@ -7,8 +7,7 @@ given                                             meaning
 ``"check_in(Who)", Who="Ann, O'Hara"``            text, with values for its variables
 ``"check_in", "Ann, O'Hara"``                     a name and its arguments
 ``("check_in", "Ann, O'Hara")``                   the same as one object; as content of a message, a list
-`Structure`, `Atom`, `Literal`, `LiteralText`     itself
-a dataclass or named tuple                        its structure, see `jacaros.artifacts.env.values.plain`
+`Structure`, dataclass, `Literal`, `LiteralText`  itself; see `jacaros.artifacts.env.values.plain`
 ================================================  ==========================================================
 """
 
@@ -105,9 +104,8 @@ def _of_text(written: str, values: Mapping[str, object], parse: Callable[[str], 
     term = lower(parse(written), names.__getitem__)
     for name, value in values.items():
         if name not in names:
-            wanted = name.capitalize()
-            otherwise = f"pass arguments by position, or write `{wanted}` in the text and pass {wanted}=..."
-            help = suggestion(wanted, names, otherwise)
+            otherwise = "pass arguments by position, or values of variables in the text: X=..."
+            help = suggestion(name.capitalize(), names, otherwise)
             raise UsageError(f"`{written}` has no variable `{name}`\n  = help: {help}")
         names.pop(name).ref = _value(value)
     return Given(resolve(term), "" if values else written, names)
@@ -124,7 +122,6 @@ def _structure(name: object, *arguments: object) -> Term:
 
 
 def _is_name(given: object) -> bool:
-    """Return whether *given* is an `Atom`, or a text that names a functor without quotes."""
     return isinstance(given, Atom) or (type(given) is str and symbol_of(given, 1).name[0] != "'")
 
 

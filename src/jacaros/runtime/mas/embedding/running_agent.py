@@ -134,10 +134,7 @@ class OpenMind:
 
         Args:
             formula: text (``battery(L) & L < Limit``), or a literal as for `add_belief`; None matches anything.
-            arguments, values: as for `add_belief`.
-
-        Raises:
-            AslError, UsageError: as for `add_belief`.
+            arguments, values: as for `add_belief`, with the same errors.
         """
         return list(self._answers(read_given(formula, arguments, values, parse_formula)))
 

@@ -202,7 +202,7 @@ def _ring() -> list[object]:
         (
             lambda a: a.achieve("deliver", parcel="p1"),
             UsageError,
-            r"no variable `parcel`\n.*write `Parcel` in the text",
+            r"no variable `parcel`\n.*help: pass arguments by position, or",
         ),
         (lambda a: a.achieve("p", 1, X=2), UsageError, "unexpected keyword `X`"),
         (lambda a: a.achieve((3,)), UsageError, "expected a name before the arguments, found `3`"),
