@@ -126,3 +126,25 @@ def test_a_file_of_plans_that_others_include_is_not_reported(tmp_path: Path) -> 
     assert found(tmp_path, None, f"{made}\n{COUNTS}") == []
     (reported,) = found(tmp_path, None, f"!made.\n{made}\n{COUNTS}")
     assert "which agent `a` does not focus" in reported[0]
+
+
+def test_agents_in_python_do_not_hide_what_other_agents_do_not_focus(tmp_path: Path) -> None:
+    def reported(body: str) -> list[str]:
+        code = f"from jacaros import PythonAgent\nclass Bob(PythonAgent):\n    async def run(self):\n        {body}\n"
+        (tmp_path / "bob.py").write_text(code, encoding="utf-8")
+        both = "focus: lab.l }\n agent bob: bob.py { focus: lab.c"
+        return [message for message, _ in found(tmp_path, both, COUNTS)]
+
+    assert reported("self.print(1)") == ["`count` comes from artifact `c`, which agent `ann` does not focus"]
+    assert reported('self.send("ann", "tell", Structure("count", (1,)))') == []
+    assert reported('await self.act("makeArtifact", "d", "Counter")') == []
+
+
+def test_the_help_names_the_step_that_finds_the_artifact(tmp_path: Path) -> None:
+    program = (
+        '!go.\n+!go <- makeArtifact("mine", "Counter", [], _); ?mine(Id); {}inc.\n'
+        f'+?mine(Id) <- lookupArtifact("mine", Id).\n{COUNTS}'
+    )
+    assert found(tmp_path, None, program.format("focus(Id); ")) == []
+    ((_, help),) = found(tmp_path, None, program.format(""))
+    assert help == "focus the artifact after it is made: `?mine(Id); focus(Id)`"

@@ -1,5 +1,6 @@
 """Check programs and projects without running them."""
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
@@ -16,7 +17,7 @@ from jacaros.agents.language.diagnostics import AslError, Diagnostic, SourceFile
 from jacaros.agents.language.loader import new_names, read_program
 from jacaros.agents.mind.actions.internal_action import STANDARD
 from jacaros.runtime.files.python_modules import ModuleUnreadable, ProjectModules
-from jacaros.runtime.files.texts import is_file
+from jacaros.runtime.files.texts import file_text, is_file
 from jacaros.runtime.files.yaml import Problem
 from jacaros.runtime.mas.agents.lifecycle import check_classes
 from jacaros.runtime.mas.agents.programs import (
@@ -39,6 +40,8 @@ if TYPE_CHECKING:
 
 PROJECTS: Final = (".mas2j", ".jcm")
 MAPPINGS: Final = (".yaml", ".yml")
+_BUILDS: Final = frozenset({"makeArtifact", "linkWorkspace", "mountWorkspace", "tellHow", "create_agent"})
+"""Words in the code of a Python agent that may add artifacts, or plans to other agents."""
 _SKIPPED: Final = frozenset({"__pycache__", "node_modules", "build", "dist"})
 
 
@@ -164,14 +167,14 @@ def _check_project(path: Path, findings: Findings) -> Set[Path]:
             checked.check_program(agent)
     checked.check_mappings()
     _check_world(deployment, findings)
-    # What Python agents, and programs with errors, would add is not known.
-    is_known = len(checked.programs) == len(different)
-    if deployment.artifact_environment:
-        findings.diagnostics += checked.of_artifacts(is_known)
-    if is_known:
-        checked.check_goals()
+    # What programs with errors would add is not known, nor which goals Python agents post.
     in_python = sum(agent.is_python for agent in different.values())
-    if len(checked.programs) + in_python == len(different):
+    is_known = len(checked.programs) + in_python == len(different)
+    if deployment.artifact_environment:
+        findings.diagnostics += checked.of_artifacts(is_known and not checked.is_built_in_python())
+    if is_known and not in_python:
+        checked.check_goals()
+    if is_known:
         checked.check_beliefs(is_partial=in_python > 0)
     return reading.used
 
@@ -387,7 +390,17 @@ class _Checked:
         def offers(kind: str, name: str, arity: int) -> bool:
             return find_type(kind).interface.operations.find(name, arity) is not None
 
-        return check_focus(self.deployment, every or self.programs, properties, offers)
+        in_python = _words(self._python_agents())
+        return check_focus(self.deployment, every or self.programs, properties, offers, in_python)
+
+    def is_built_in_python(self) -> bool:
+        """Return whether Python agents, or modules beside them, may make artifacts or give other agents plans."""
+        beside = {path for each in self._python_agents() for path in each.parent.glob("*.py")}
+        return not _BUILDS.isdisjoint(_words(beside))
+
+    def _python_agents(self) -> list[Path]:
+        agents = self.deployment.agents
+        return [each.source_path for each in agents if each.is_python and is_file(each.source_path)]
 
     def check_goals(self) -> None:
         """Note plans for goals that no agent posts, in the folder of the project, unless parts of it are not run."""
@@ -510,6 +523,10 @@ def _check_mapping(path: Path, findings: Findings, beside: Sequence[Path] = ()) 
 
     findings.files.add(path.resolve())
     findings.diagnostics += check_mapping_file(path, beside)
+
+
+def _words(files: Iterable[Path]) -> frozenset[str]:
+    return frozenset(word for each in files for word in re.findall(r"\w+", file_text(each)))
 
 
 def _of_project(diagnostic: Diagnostic) -> Diagnostic:

@@ -5,11 +5,13 @@ Only an agent whose program shows all that it focuses is looked at.
 
 import re
 from collections.abc import Iterable, Iterator, Sequence, Set
+from itertools import chain
 from typing import TYPE_CHECKING, Final
 
-from jacaros.agents.checks.flow import Reader, flows_of, is_own
+from jacaros.agents.checks.flow import Reader, flows_of, is_own, key_of
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic
+from jacaros.agents.language.lowering import format_term
 from jacaros.agents.language.nodes import ByKind
 from jacaros.agents.mind.actions.internal_action import STANDARD
 from jacaros.runtime.mas.checks.artifacts import Offered, type_of
@@ -25,42 +27,54 @@ CODE: Final = "unfocused-artifact"
 _FOCUSING: Final = frozenset({"focus", "focusWhenAvailable"})
 _USING: Final = "use_artifact"
 """The goal of the library that makes and focuses an artifact."""
+_MAKING: Final = frozenset({"makeArtifact", "create_artifact", _USING})
+"""The action, and the goals of the library, that make an artifact from a name and a type."""
+_FINDING: Final = frozenset({"lookupArtifact", "artifact"})
+"""The action, and the test goal of the library, that find an artifact by its name."""
 _MAIN: Final = "main"
 _REACHING: Final = _FOCUSING | {"joinWorkspace", "makeArtifact", "lookupArtifact"}
 """Actions by which an agent may reach artifacts that the project does not give it."""
 _WORD: Final = re.compile(r"\w+")
 
+Plans = Sequence[tuple[nodes.Plan, ByKind]]
 Programs = Sequence[tuple[AgentSpec, nodes.Program]]
 
 
 def check_focus(
-    deployment: Deployment, programs: Programs, properties: "Properties", offers: "Offers"
+    deployment: Deployment,
+    programs: Programs,
+    properties: "Properties",
+    offers: "Offers",
+    elsewhere: frozenset[str] = frozenset(),
 ) -> list[Diagnostic]:
     """Return warnings about properties of artifacts that agents do not focus, and artifacts that agents cannot use.
 
     Args:
         deployment: the project.
-        programs: all its agents with their programs.
+        programs: all its agents with their programs, but for those in Python.
         properties: returns the names of properties and signals of an artifact type; None if they are not known.
         offers: returns whether an artifact type has an operation of a name and a number of arguments.
+        elsewhere: the words in the code of agents in Python, which may join, make or tell what they name.
     """
-    joined = {name for agent, _ in programs for name in agent.join}
+    joined = {name for agent in (*deployment.agents, *(each for each, _ in programs)) for name in agent.join}
     return [
-        *_out_of_reach(deployment, programs, joined),
+        *_out_of_reach(deployment, programs, joined, elsewhere),
         *(
             each
             for agent, program in programs
             for each in _not_joined(deployment, agent, program, joined, offers)
         ),
-        *_Focus(deployment, programs, properties).findings(),
+        *_Focus(deployment, programs, properties).findings(elsewhere),
     ]
 
 
 # ---- workspaces
 
 
-def _out_of_reach(deployment: Deployment, programs: Programs, joined: Set[str]) -> Iterator[Diagnostic]:
-    named = {word for _, program in programs for word in _words(program)}
+def _out_of_reach(
+    deployment: Deployment, programs: Programs, joined: Set[str], elsewhere: frozenset[str]
+) -> Iterator[Diagnostic]:
+    named = elsewhere.union(word for _, program in programs for word in _words(program))
     for workspace in deployment.workspaces:
         for artifact in workspace.artifacts:
             names = {workspace.name, workspace.name.rpartition("/")[2], artifact.name}
@@ -120,11 +134,14 @@ class _Focus:
         for artifact in self._declared.values():
             self._by_name.setdefault(artifact.name, set()).add(artifact.type_name)
         for _, program in programs:
-            for name, kind, _ in _made(program.found):
+            own = [(plan, in_plan) for plan, in_plan in program.in_plans if is_own(plan.trigger.literal)]
+            posted = {_functor(step.goal) for _, in_plan in own for step in in_plan.of(nodes.Achieve)}
+            called = [each for each in program.in_plans if _functor(each[0].trigger.literal) in posted]
+            for name, kind, _ in chain.from_iterable(_made(in_plan) for _, in_plan in (*own, *called)):
                 if kind:
                     self._by_name.setdefault(name, set()).add(kind)
 
-    def findings(self) -> Iterator[Diagnostic]:
+    def findings(self, elsewhere: frozenset[str]) -> Iterator[Diagnostic]:
         """Return a warning for each property that an agent uses and does not focus."""
         owners = self._owners()
         if owners is None:
@@ -140,19 +157,19 @@ class _Focus:
         flows = flows_of([program for _, program in self._programs], STANDARD)
         if any(flow.is_open or flow.tells_unseen for flow in flows):
             return
-        added = {name for flow in flows for name in (*flow.adders, *flow.told)}
+        added = elsewhere.union(name for flow in flows for name in (*flow.adders, *flow.told))
         focused: dict[str, set[str]] = {}  # the properties that agents with a file focus
         for flow, own in zip(flows, seen, strict=True):
             for file in flow.files:
                 focused.setdefault(file, set()).update(own)
-        for (agent, _), flow in zip(self._programs, flows, strict=True):
+        for (agent, program), flow in zip(self._programs, flows, strict=True):
             for reader in _first(flow.readers):
                 name = reader.key[0]
                 file = reader.literal.span.file.name if reader.literal.span is not None else ""
                 if name in owners and name not in added and name not in focused.get(file, owners):
-                    yield self._warning(agent, reader, owners[name])
+                    yield self._warning(agent, program, reader, owners[name])
 
-    def _warning(self, agent: AgentSpec, reader: Reader, kind: str) -> Diagnostic:
+    def _warning(self, agent: AgentSpec, program: nodes.Program, reader: Reader, kind: str) -> Diagnostic:
         found = [(space, each.name) for (space, _), each in self._declared.items() if each.type_name == kind]
         artifact = found[0][1] if found else kind
         who = agent.declared_name or agent.name
@@ -160,9 +177,20 @@ class _Focus:
         help = (
             f"write `focus: {'.'.join(found[0])}` in the declaration of agent `{who}`"
             if found and agent.span is not None
-            else "focus the artifact after it is made: `makeArtifact(..., Id); focus(Id)`"
+            else f"focus the artifact after it is made: `{self._made_by(program, kind)}`"
         )
         return Diagnostic("warning", message, reader.literal.span, help, CODE)
+
+    def _made_by(self, program: nodes.Program, kind: str) -> str:
+        """Return the step that a test goal finds an artifact of a type with, or one that makes it, and a focus."""
+        for plan, in_plan in program.in_plans:
+            for step in _tests(in_plan) if is_own(plan.trigger.literal) else ():
+                last = step.arguments[-1] if step.arguments else None
+                if isinstance(last, nodes.Variable) and kind in (
+                    self._meant(last, in_plan, program.in_plans) or ()
+                ):
+                    return f"?{format_term(step)}; focus({last.name})"
+        return "makeArtifact(..., Id); focus(Id)"
 
     def _owners(self) -> dict[str, str] | None:
         """Return the type of artifact that each property and signal comes from; None if they are not known."""
@@ -197,27 +225,42 @@ class _Focus:
                     return None
                 continue
             for each in focuses:
-                kinds = self._meant(each.arguments[0], in_plan)
+                kinds = self._meant(each.arguments[0], in_plan, program.in_plans)
                 if kinds is None:
                     return None
                 found |= kinds
         return found
 
-    def _meant(self, term: nodes.Term, in_plan: ByKind) -> set[str] | None:
-        """Return the types that an argument of ``focus`` may refer to."""
-        if isinstance(term, nodes.Variable):
-            made = {kind for _, kind, identifier in _made(in_plan) if identifier == term}
-            looked_up = [
-                each.arguments[0]
-                for each in _actions(in_plan)
-                if each.functor == "lookupArtifact" and each.arguments[1:] == (term,)
-            ]
-            names = [type_of(each) for each in looked_up]
-            if (not made and not names) or None in names:
-                return None
-            return made.union(*(self._by_name.get(name.rpartition(".")[2], set()) for name in names if name))
-        name = type_of(term)
-        return None if name is None else self._by_name.get(name.rpartition(".")[2])
+    def _meant(self, term: nodes.Term, in_plan: ByKind, plans: Plans) -> set[str] | None:
+        """Return the types that an argument of ``focus`` may refer to; *plans* may answer test goals."""
+        if not isinstance(term, nodes.Variable):
+            name = type_of(term)
+            return None if name is None else self._by_name.get(name.rpartition(".")[2])
+        found: list[set[str] | None] = [{kind} for _, kind, made in _made(in_plan) if made == term]
+        for step in (*_actions(in_plan), *_tests(in_plan)):
+            if step.arguments[-1:] != (term,):
+                continue
+            if step.functor in _FINDING and len(step.arguments) > 1:
+                name = type_of(step.arguments[0])
+                found.append(None if name is None else self._by_name.get(name.rpartition(".")[2], set()))
+                continue
+            for answer, in_answer in plans:
+                head, trigger = answer.trigger.literal, answer.trigger
+                if (trigger.operator, trigger.kind) != ("+", "?") or not isinstance(head, nodes.Literal):
+                    continue
+                if key_of(head) == key_of(step):
+                    rest = [each for each in plans if each[0] is not answer]
+                    found.append(self._meant(head.arguments[-1], in_answer, rest))
+        known = [each for each in found if each is not None]
+        return set().union(*known) if known and len(known) == len(found) else None
+
+
+def _functor(literal: nodes.Node) -> str:
+    return literal.functor if isinstance(literal, nodes.Literal) else ""
+
+
+def _tests(found: ByKind) -> list[nodes.Literal]:
+    return [step.formula for step in found.of(nodes.Test) if isinstance(step.formula, nodes.Literal)]
 
 
 def _actions(found: ByKind) -> list[nodes.Literal]:
@@ -227,10 +270,11 @@ def _actions(found: ByKind) -> list[nodes.Literal]:
 
 def _made(found: ByKind) -> Iterator[tuple[str, str, nodes.Term | None]]:
     """Yield name, type and identifier of the artifacts that plans make."""
-    for action in _actions(found):
-        if action.functor == "makeArtifact" and len(action.arguments) >= 2:
-            name, kind = map(type_of, action.arguments[:2])
-            yield name or "", kind or "", action.arguments[3] if len(action.arguments) > 3 else None
+    goals = [step.goal for step in found.of(nodes.Achieve)]
+    for each in (*_actions(found), *goals):
+        if isinstance(each, nodes.Literal) and each.functor in _MAKING and len(each.arguments) >= 2:
+            name, kind = map(type_of, each.arguments[:2])
+            yield name or "", kind or "", each.arguments[3] if len(each.arguments) > 3 else None
 
 
 def _first(readers: Iterable[Reader]) -> Iterator[Reader]:
