@@ -34,7 +34,8 @@ _HELP: Final = "wait in it, as in `.wait(1000)`, or end it with another plan"
 def loops_without_wait(program: nodes.Program, found: ByKind, known: KnownActions) -> Iterator[Diagnostic]:
     """Warn of goals whose plans all post the goal again, and of ``while`` loops, if no step waits or acts.
 
-    A goal that has a plan without such a step, or that something else may end, is not reported.
+    So is a plan that only posts its own goal again, until another one applies. Any other goal that has a plan without
+    such a step, or that something else may end, is not reported.
     """
     if any(call.name in _ENDING or known.of(call).changes_plans for call in found.of(nodes.InternalAction)):
         return
@@ -45,6 +46,12 @@ def loops_without_wait(program: nodes.Program, found: ByKind, known: KnownAction
             yield _without_wait("this loop", loop)
     reposts = _reposts(_by_event(program.plans), quick)
     seen: set[_Event] = _ended(found)
+    for own, plans in quick.plans.items():
+        for plan in plans if own not in seen and own not in reposts else ():
+            changes = ByKind(plan.body).of(nodes.BeliefChange)
+            again = quick.raising(plan, quick.plans) if _takes_all(plan) and not changes else []
+            if any(isinstance(each, nodes.Achieve) and each.goal == plan.trigger.literal for each in again):
+                yield _without_wait(f"`!{own[1]}`", again[-1])
     event: _Event | None
     for event in reposts:
         path: list[_Event] = []
@@ -170,7 +177,7 @@ class _Quick:
 
     def __init__(self, program: nodes.Program, known: KnownActions) -> None:
         self._known = known
-        self._plans = _by_event(program.plans)
+        self.plans = _by_event(program.plans)
         self._asked: dict[_Event, bool] = {}
         facts = [each for each in program.beliefs if isinstance(each, nodes.Literal)]
         gone = {_key("", each) for body in ByKind(program.plans).of(nodes.Body) for each in _taken_away(body)}
@@ -215,7 +222,7 @@ class _Quick:
         """Return whether a goal is achieved by quick steps."""
         if event not in self._asked:
             self._asked[event] = False  # while it is looked at: a recursion
-            plans = self._plans.get(event, ())
+            plans = self.plans.get(event, ())
             self._asked[event] = any(map(_takes_all, plans)) and all(
                 isinstance(plan.body, nodes.Body) and self.are(plan.body.steps) for plan in plans
             )

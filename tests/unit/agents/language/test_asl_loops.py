@@ -26,6 +26,7 @@ def places(text: str) -> list[tuple[str, int]]:
         ("+!go <- .print(a);\n !!go.", ("`!go`", 2)),
         ("+!go(N) <- +n(N); .random(X); if (n(X)) { +m } else { -m };\n !go(N + 1).", ("`!go`", 2)),
         ("+!go : ready <- !go. +!go\n <- !go.", ("`!go`", 2)),
+        ("+!go : ready <- rest; !go. +!go\n <- !go.", ("`!go`", 2)),
         ("+!a <- !b.\n+!b <- .print(b);\n !a.", ("`!a`", 3)),
         ("+!go <- !note;\n !go. +!note <- +noted.", ("`!go`", 2)),
         ("+!go <- !!beat;\n !go. +!beat <- .wait(10).", ("`!go`", 2)),
