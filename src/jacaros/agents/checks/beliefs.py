@@ -11,7 +11,7 @@
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from math import pi
 from typing import Final
@@ -141,23 +141,67 @@ def _unmet(
     return None
 
 
+def unawaited(program: nodes.Program, adders: Mapping[str, Sequence[Adder]]) -> Iterator[Diagnostic]:
+    """Return notes about test goals for one number of a measurement that no earlier step of the plan waits for."""
+    for plan in program.plans:
+        known = {each.functor for each in nodes_in(nodes.Literal, plan.trigger)}
+        for step in plan.body.steps if isinstance(plan.body, nodes.Body) else ():
+            if isinstance(step, nodes.Achieve):
+                break  # its plans may wait
+            if isinstance(step, nodes.Test) and isinstance(asked := step.formula, nodes.Literal):
+                numbers = [at for at, each in enumerate(asked.arguments) if isinstance(each, nodes.Number)]
+                given = [place_of(each, numbers[0]) for each in of_size(adders, key_of(asked)) if numbers]
+                is_measured = bool(given) and all(
+                    each.kind == "number" and not each.options for each in given
+                )
+                if is_measured and asked.functor not in known and is_own(asked):
+                    text = as_written(asked)
+                    message = f"`?{text}` fails unless the value is exactly this one when it is tested"
+                    yield problem(
+                        "unawaited-value", message, step.span, f"wait for it before: `.wait({text})`"
+                    )
+            known |= {each.functor for each in nodes_in(nodes.Literal, step)}
+
+
+def capital_atoms(flow: ProgramFlow, adders: Mapping[str, Sequence[Adder]]) -> Iterator[Diagnostic]:
+    """Return warnings about variables, used once, that are called as the only value that a belief has."""
+    for reader in filter(lambda each: is_own(each.literal), flow.readers):
+        given = of_size(adders, reader.key)
+        for place, argument in enumerate(reader.literal.arguments if given else ()):
+            name = argument.name if isinstance(argument, nodes.Variable) and not argument.unnamed else ""
+            lower = name[:1].lower() + name[1:]
+            values = {place_of(each, place).options for each in given}
+            if name and values == {(lower,)} and nodes.occurrences(reader.clause).get(name) == 1:
+                message = f"`{name}` is a variable (capital {name[0]}), which matches any value"
+                yield problem("singleton-variable", message, argument.span, did_you_mean([lower]))
+
+
 def mixed_facts(flow: ProgramFlow) -> Iterator[Diagnostic]:
     """Return warnings about a string among the atoms of initial beliefs, or an atom among strings."""
+    known = [each.literal for adders in flow.adders.values() for each in adders if each.how == "fact"]
+    texts = {_kind_andas_written(term) for fact in known if fact for term in fact.arguments}
     for adders in flow.adders.values():
         facts: dict[int, list[nodes.Literal]] = {}
         for each in adders:
             if each.how == "fact" and each.literal is not None and is_own(each.literal):
                 facts.setdefault(len(each.literal.arguments), []).append(each.literal)
         for size, literals in facts.items():
-            for place in range(size if len(literals) >= _FEWEST_FACTS else 0):
-                yield from _odd_one(literals, place)
+            for place in range(size if len(literals) > 1 else 0):
+                yield from _odd_one(literals, place, texts)
 
 
-def _odd_one(facts: Sequence[nodes.Literal], place: int) -> Iterator[Diagnostic]:
+def _kind_andas_written(term: nodes.Node) -> tuple[str, str]:
+    return value_of(term, {}).kind, term.value if isinstance(term, nodes.String) else format_term(term)
+
+
+def _odd_one(facts: Sequence[nodes.Literal], place: int, texts: Set[tuple[str, str]]) -> Iterator[Diagnostic]:
     kinds = [value_of(each.arguments[place], {}).kind for each in facts]
     for kind, usual in (("string", "atom"), ("atom", "string")):
         if kinds.count(kind) == 1 and kinds.count(usual) == len(kinds) - 1:
             odd = facts[kinds.index(kind)].arguments[place]
+            # Of two facts, the one whose value other facts have in the other kind.
+            if len(facts) < _FEWEST_FACTS and (usual, _kind_andas_written(odd)[1]) not in texts:
+                continue
             name, size = key_of(facts[0])
             others = f"the other facts `{name}/{size}` have {_KINDS[usual]} here"
             message = f"`{format_term(odd)}` is {_KINDS[kind]}, but {others}"
@@ -221,6 +265,8 @@ def _help(literal: nodes.Literal, same: Sequence[Adder], place: int) -> str:
         return f"begin variables with a capital letter: `{as_written(_with_variables(literal, same))}`"
     options = list(dict.fromkeys(option for each in given for option in each.options))
     near = close_matches(as_written(wanted), options) or options[:_MOST_OPTIONS]
+    if not near and isinstance(wanted, nodes.String) and any(each.kind == "atom" for each in given):
+        near = [str(wanted.value)]
     texts = list(map(as_written, literal.arguments))
     lists = (", ".join([*texts[:place], option, *texts[place + 1 :]]) for option in near)
     return did_you_mean(f"{literal.functor}({each})" for each in lists)

@@ -32,7 +32,7 @@ class Value:
 
     Attributes:
         kind: ``number``, ``string``, ``atom``, ``list`` or ``structure``; empty: anything.
-        options: the only values that it can have, as written; empty: any of its kind.
+        options: the only values that it can have, as written; empty: any of its kind. Without a kind, some of them.
         unit: of a number, in words: ``degrees``, ``percent``, ``0 to 1``; empty if unknown.
         whole: whether a number has no decimals.
     """

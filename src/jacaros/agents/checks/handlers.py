@@ -243,6 +243,29 @@ def facts_for_goals(program: nodes.Program) -> Iterator[Diagnostic]:
             yield problem("missing-mark", message, facts[key][0].span, did_you_mean([f"!{key[0]}"]))
 
 
+def bypassed_plans(programs: Sequence[nodes.Program]) -> Iterator[Diagnostic]:
+    """Warn of actions, if a plan for the goal of that name handles their failure, and no program posts it."""
+    bypassing: list[nodes.Literal] = []
+    for program in programs:
+        handled = {_key(literal) for _, literal in _of_goals(program.plans, "+")}
+        handled &= {_key(literal) for _, literal in _of_goals(program.plans, "-")}
+        for plan, in_plan in program.in_plans if handled else ():
+            actions = (step.action for step in in_plan.of(nodes.ExternalAction))
+            bypassing += [
+                each
+                for each in actions
+                if isinstance(each, nodes.Literal)
+                and _key(each) in handled
+                and not _is_for(plan.trigger, _key(each))
+            ]
+    posts = Posts(*(program.found for program in programs if bypassing))
+    for action in bypassing:
+        if not posts.may_post(_key(action)):
+            name = action.functor
+            message = f"`{name}` is the operation, and nothing posts `!{name}`, which handles its failure"
+            yield problem("missing-mark", message, action.span, did_you_mean([f"!{name}"]))
+
+
 def missing_marks(program: nodes.Program, known: KnownActions) -> Iterator[Diagnostic]:
     """Warn of actions, in a program whose artifacts are not known, that are certainly goals or internal actions.
 

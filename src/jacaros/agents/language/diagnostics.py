@@ -181,7 +181,7 @@ _CODES: Final[dict[Severity, str]] = {
         wrong-supervision wrong-unit wrong-urgency
     """,
     "note": """
-        goal-never-posted narrow-handler not-imported quoted-atom short-wait
+        goal-never-posted narrow-handler not-imported quoted-atom short-wait unawaited-value
     """,
 }
 """The codes of diagnostics, by their usual level: what the thesis prints and Jason rejects is only a warning in programs of

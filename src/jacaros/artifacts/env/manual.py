@@ -73,8 +73,10 @@ def _in_order(node: ast.AST) -> Iterator[ast.AST]:
 
 
 def _value(node: ast.expr) -> str:
-    """Return a word for a value: the name of what is passed or read, ``_`` for an expression without one."""
+    """Return a word for a value: the name of what is passed or read, the atom in quotes, ``_`` for any other one."""
     match node:
+        case ast.Call(ast.Name("Atom"), [ast.Constant(str(name))]):
+            return f"'{name}'"
         case ast.Starred():
             return "..."
         case ast.Name(name):

@@ -31,9 +31,9 @@ class ArtSlamData(RosArtifact):
 
     Properties:
         pos2d(X, Y): the agent's cell, initially 0, 0.
-        pos2d(Object, X, Y): the cell of an object, an atom: `me`, the agent; each place, which is a cell with a label
-            other than free, obstacle and unknown, such as `home` and `goal`; each thing of `updateObject`; and
-            `obstacle`, one for each obstacle in the newest range of view.
+        pos2d(Object, X, Y): the cell of an object. Object: atom. It is `me`, the agent; each place, which is a
+            cell with a label other than free, obstacle and unknown, such as `home` and `goal`; each thing of
+            `updateObject`; and `obstacle`, one for each obstacle in the newest range of view.
         cell(X, Y, Label): one for each labelled cell of the newest range of view.
         currentRange(List): the same as a list of ``cell(X, Y, Label)``.
         route(List): the newest route, a list of ``cell(X, Y)`` from the agent's cell to the goal.

@@ -207,6 +207,7 @@ def test_units_of_parameters_are_those_of_the_values(tmp_path: Path, step: str, 
         ("at(a). !go. +!go <- !to[achieves(at(b))]. +!to.", "b"),
         ('at(a). at(b). !go. +!go <- !to("a"). +!to(P) : at(P) <- .print(P).', '"a"'),
         ('at(a). at(b). at("c"). !go. +!go : at(P) <- .print(P).', '"c"'),
+        ('zone(b). at(a). at("b"). !go. +!go : at(P) & zone(P) <- .print(P).', '"b"'),
         ('!go. +!go <- .broadcast(tell, "ready").', '"ready"'),
         ("n(1). !go. +!go <- ?n(N); -+n(N + 1); ?n(a); .print(a).", "a"),
     ],
@@ -227,6 +228,7 @@ def test_a_value_that_nothing_gives_never_matches(tmp_path: Path, program: str, 
         "at(a). !go(c). +!go(P) : at(P) <- .print(P). +!go(P) <- .print(P).",
         'at(a). at("b"). !go. +!go : at(P) <- .print(P).',
         "!go. +!go : not ready <- .print(a).",
+        'zone("b"). at(a). at("b"). !go. +!go : at(P) & zone(P) <- .print(P).',
         "+other_publisher(T, N) <- .print(T, N).",
         "p(1). !go. +!go <- for (p(X)) { .print(X) }; X = after; .print(X).",
     ],
@@ -245,6 +247,59 @@ def test_a_value_that_may_be_given_is_not_reported(tmp_path: Path, program: str)
 )
 def test_a_belief_that_nothing_reads_is_misspelt(tmp_path: Path, program: str, expected: str) -> None:
     assert told(tmp_path, program) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("program", "reported"),
+    [
+        ("!go. +!go <- +door(open). +door(Open) <- .print(a).", True),
+        ("!go. +!go <- +door(open). +door(Open) <- .print(Open).", False),
+        ("!go. +!go <- +door(open). +door(State) <- .print(a).", False),
+        ("!go. +!go <- +door(open); +door(shut). +door(Open) <- .print(a).", False),
+    ],
+)
+def test_a_variable_named_as_the_only_value_is_probably_that_value(
+    tmp_path: Path, program: str, reported: bool
+) -> None:
+    (tmp_path / "robot.asl").write_text(program, encoding="utf-8")
+    diagnostics = check_files([tmp_path / "robot.asl"]).diagnostics
+    help = [each.help for each in diagnostics if each.code == "singleton-variable"]
+    assert help == (["did you mean `open`?"] if reported else [])
+
+
+@pytest.mark.parametrize(
+    ("steps", "reported"),
+    [
+        ("drive(1, 0); ?charge(100, _)", True),
+        (".wait(charge(100, _)); ?charge(100, _)", False),
+        ("!rest; ?charge(100, _)", False),
+        ("?charge(P, _); P == 100", False),
+    ],
+)
+def test_a_test_for_one_measurement_is_noted_unless_the_plan_waits(
+    tmp_path: Path, steps: str, reported: bool
+) -> None:
+    (tmp_path / "rover.yaml").write_text(MAPPING, encoding="utf-8")
+    (tmp_path / "robot.asl").write_text(f"!go. +!go <- {steps}. +!rest <- .wait(10).", encoding="utf-8")
+    diagnostics = check_files([tmp_path / "robot.asl"], [str(tmp_path / "rover.yaml")]).diagnostics
+    assert [each.code for each in diagnostics] == (["unawaited-value"] if reported else [])
+
+
+@pytest.mark.parametrize(
+    ("plans", "reported"),
+    [
+        ("+!drive(S, T) <- drive(S, T). -!drive(_, _) <- .print(a).", True),
+        ("+!drive(S, T) <- drive(S, T).", False),
+        ("+!drive(S, T) <- drive(S, T). -!drive(_, _) <- .print(a). +!more <- !drive(0, 1).", False),
+    ],
+)
+def test_an_operation_whose_goal_handles_failure_needs_its_mark(
+    tmp_path: Path, plans: str, reported: bool
+) -> None:
+    (tmp_path / "rover.yaml").write_text(MAPPING, encoding="utf-8")
+    (tmp_path / "robot.asl").write_text(f"!go. +!go <- drive(1, 0). {plans}", encoding="utf-8")
+    diagnostics = check_files([tmp_path / "robot.asl"], [str(tmp_path / "rover.yaml")]).diagnostics
+    assert [each.help for each in diagnostics] == (["did you mean `!drive`?"] if reported else [])
 
 
 JCM = 'mas m { agent a : robot.asl mapping: "rover.yaml" agent b : b.asl }'

@@ -18,7 +18,7 @@ from jacaros.agents.body.body import keys
 from jacaros.agents.checks.annotations import needs_of
 from jacaros.agents.checks.flow import is_own
 from jacaros.agents.checks.goals import KnownActions
-from jacaros.agents.checks.handlers import Key, handled_in, with_mark
+from jacaros.agents.checks.handlers import Key, bypassed_plans, handled_in, with_mark
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.agents.language.nodes import UNDECLARED, nodes_in, walk
@@ -79,6 +79,7 @@ def _unknown_operations(
     if any(_is_open(program) for _, program in programs) or any(map(_offers_more, types)):
         return
     offered = Offered(types)
+    yield from bypassed_plans([program for _, program in programs])
     for agent, program in programs:
         if agent.agent_class:
             continue

@@ -15,12 +15,14 @@ from typing import TYPE_CHECKING, Final
 
 from jacaros.agents.checks.beliefs import (
     as_written,
+    capital_atoms,
     comparisons,
     is_misspelt,
     mismatches,
     mixed_facts,
     mixed_units,
     told_texts,
+    unawaited,
     unmet_goals,
 )
 from jacaros.agents.checks.flow import ANY, Adder, Flow, Key, ProgramFlow, Reader, flows_of, is_own, source_of
@@ -153,6 +155,7 @@ class _BeliefCheck:
                 here = {name: each for name, each in adders.items() if name not in composed}
                 certain = {name: each for name, each in here.items() if name not in doubtful}
                 yield from (*mismatches(flow, certain), *unmet_goals(program, certain))
+                yield from (*unawaited(program, certain), *capital_atoms(flow, certain))
                 # Whatever else adds a belief, it does so in the same units.
                 yield from (*comparisons(flow, here), *mixed_units(flow, here, self._units))
 

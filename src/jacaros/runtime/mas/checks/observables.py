@@ -47,10 +47,15 @@ class Observables:
                 return None
             for name, described in self._described(artifact_type):
                 found.setdefault(name, []).append(described)
+            sizes = {
+                (name, size)
+                for name, adders in found.items()
+                for each in adders
+                for size in (each.size, None)
+            }
             for name, written in chain.from_iterable(map(self._written, classes)):
-                known = found.setdefault(name, [])
-                if all(each.size not in (None, written.size) for each in known):  # the description says more
-                    known.append(written)
+                if (name, written.size) not in sizes:  # the description says more
+                    found.setdefault(name, []).append(written)
         return found
 
 
@@ -97,7 +102,12 @@ def _values(names: Sequence[str], text: str) -> Iterator[Value]:
     for name in names:
         spans = [each for each in words if each.startswith(f"{name} to ")]
         within = spans[0] if spans else within
-        yield value_of_words(words.get(name) or words.get(within, ""))
+        atom = name.strip("'")  # one of the values in the code
+        yield (
+            Value(options=(atom,))
+            if name != atom
+            else value_of_words(words.get(name) or words.get(within, ""))
+        )
         within = "" if within.endswith(f" to {name}") else within
 
 
