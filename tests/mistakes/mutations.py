@@ -2,14 +2,15 @@
 
 A mistake that changes nothing is not one. The rules, which look at the texts only and never at what `check` finds:
 
-* unread: a belief is added under another name or with other arguments, and no other place of the project has its name;
+* unread: a belief is added under another name or with other arguments, or a property of a mapping gets another unit, and
+  no other place of the project has its name;
 * unmatched: an atom becomes a string that is only printed or passed to an artifact (which takes both), or that is nowhere
   else, so nothing is compared with it;
 * unobserved: a focus is dropped, and the programs have no name that the artifact may show; artifacts in Python are
   searched for the word. Operations need no focus, but an agent joins the workspace of an artifact by focusing it: a focus
   in a project file is dropped without effect only if the workspace is `main` or the agent focuses another artifact there;
-* pace: a time to wait is dropped outside of a loop, or a condition to wait for whose beliefs the plan does not ask for
-  later;
+* pace: a time to wait is dropped outside of a loop, or in one that counts to its end; or a condition to wait for whose
+  beliefs the plan does not ask for later, or only after an operation with a duration, which gives them time to come;
 * both: the goal or operation is there with the other number of arguments, too;
 * apart: the changed file belongs to the page or folder, but not to the checked program;
 * ignored: the file switches off the finding that reports this kind.
@@ -17,7 +18,7 @@ A mistake that changes nothing is not one. The rules, which look at the texts on
 
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
@@ -98,7 +99,7 @@ def mistakes(program: Program) -> Iterator[Mistake]:
     for name in program.mutable(files):
         lines = files[name].split("\n")
         is_program = name.endswith(".asl")
-        others = chain(dropped_focus(lines, project), units(lines))
+        others = chain(dropped_focus(lines, project), units(lines, project))
         for edit in project.edits(name) if is_program else others:
             before = lines[edit.line - 1]
             after = before[: edit.start] + edit.text + before[edit.end :]
@@ -206,6 +207,12 @@ class Project:
     def signatures(self) -> set[tuple[str, int]]:
         """Names with their numbers of arguments."""
         return {(each.functor, len(each.arguments)) for each in self.literals}
+
+    def lasts(self, action: Node) -> bool:
+        """Return whether an action is an operation of a mapping of the project that takes a given time."""
+        name = getattr(action, "functor", "")
+        section = re.compile(rf"^  {name}:.*\n(?:    .*\n)*?    duration:", re.MULTILINE)
+        return any(section.search(text) for file, text in self.files.items() if file.endswith(".yaml"))
 
     def observes(self, kind: str) -> bool:
         """Return whether the programs have a name that an artifact of this type may show; True for unknown types."""
@@ -463,10 +470,33 @@ class Clause:
             names = {each.functor for each in goals if isinstance(each, nodes.Literal)}
             head = plan.trigger.literal
             is_loop = isinstance(head, nodes.Literal) and head.functor in names and not acts
-            return "" if is_loop else "pace"
+            is_endless = isinstance(head, nodes.Literal) and not self._counts_to_an_end(head, goals)
+            return "" if is_loop and is_endless else "pace"
         awaited = {each.functor for each in nodes_in(nodes.Literal, call.arguments[0])}
-        asked = {each.functor for each in nodes_in(nodes.Literal, tuple(later)) if each.arguments}
-        return "" if awaited & asked else "pace"
+        for after in later:
+            if any(
+                each.functor in awaited and self.roles.get(id(each)) == "asked"
+                for each in nodes_in(nodes.Literal, after)
+            ):
+                return ""
+            if isinstance(after, nodes.ExternalAction) and self.project.lasts(after.action):
+                return "pace"
+        return "pace"
+
+    def _counts_to_an_end(self, head: nodes.Literal, goals: Iterable[Node]) -> bool:
+        """Return whether a goal is posted again with another number, and a plan for one number does not post it."""
+        own = [each for each in goals if isinstance(each, nodes.Literal) and each.functor == head.functor]
+        counts = any(isinstance(part, nodes.Arithmetic) for each in own for part in each.arguments)
+        ends = [
+            plan
+            for program in self.project.programs.values()
+            for plan in program.plans
+            if (plan.trigger.operator, plan.trigger.kind) == ("+", "!")
+            and getattr(plan.trigger.literal, "functor", "") == head.functor
+            and any(isinstance(each, nodes.Number) for each in getattr(plan.trigger.literal, "arguments", ()))
+            and not any(True for _ in nodes_in(nodes.Achieve, plan.body))
+        ]
+        return counts and bool(ends)
 
     def focus(self, step: nodes.ExternalAction) -> Iterator[Edit]:
         """Leave out a step that focuses."""
@@ -545,8 +575,12 @@ def _joins_by(focus: str, number: int, lines: list[str]) -> bool:
     return lines[start].split()[1] != "main" and not focusing.issuperset(names)
 
 
-def units(lines: list[str]) -> Iterator[Edit]:
-    """Leave out a unit of a mapping, or write another one."""
+def units(lines: list[str], project: Project) -> Iterator[Edit]:
+    """Leave out a unit of a mapping."""
+    used = {each.functor for each in project.literals}
+    part = ""  # the property, signal or operation that the line belongs to
     for number, line in enumerate(lines, 1):
+        head = re.match(r"  (\w+):", line)
+        part = head[1] if head else part
         for found in re.finditer(r"(, *)unit: *(degrees|percent)", line):
-            yield Edit("unit", number, found.start(), found.end(), "")
+            yield Edit("unit", number, found.start(), found.end(), "", "" if part in used else "unread")

@@ -107,7 +107,6 @@ PROGRAMS = [
     Program("docs/how-to/map_the_ground.md", "scout.asl", world="house"),
     Program("docs/how-to/share_a_robot.md", "robot.asl"),
     Program("docs/how-to/when_things_go_wrong.md", "lookout.jcm"),
-    Program("docs/how-to/why_did_it_do_that.md", "courier.jcm"),
     Program("docs/how-to/write_an_artifact.md", "courier/courier.asl"),
     Program("docs/how-to/write_an_artifact.md", "desk/desk.jcm"),
     Program("docs/reference/mapping.md", "careful.asl", ("careful.yaml",), "patrol"),
