@@ -146,7 +146,7 @@ def _numbers(event: str, data: Data) -> tuple[tuple[Any, ...], Sequence[float]] 
     if event == "laser":
         return (event, data["robot"]), [min((each for each in data["ranges"] if each), default=0.0)]
     if event == "property":
-        values: Sequence[Any] = data.get("values") or ()
+        values = data.get("values") or ()
         is_flat = bool(values) and all(type(each) in (int, float) for each in values)
         return ((event, data["artifact"], data["name"], data.get("key")), values) if is_flat else None
     found = _FLAT.fullmatch(data["belief"]) if event == "belief" else None
