@@ -79,7 +79,7 @@ class OfferingAgent:
         ]
 
     def close(self) -> None:
-        """The agent has ended, or is not served any more."""
+        """The agent has ended, or is no longer served."""
         self._end_turns()
         self.mind.observers.callers = None
         for each in tuple(self.alive.values()):

@@ -65,7 +65,7 @@ class Service:
         return session
 
     def close(self) -> None:
-        """End all sessions: the run has ended, or is not served any more."""
+        """End all sessions: the run has ended, or is no longer served."""
         self._end_watch()
         for agent in tuple(self.agents.values()):
             agent.close()

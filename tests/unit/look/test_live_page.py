@@ -38,7 +38,7 @@ async def test_a_robot_is_dragged(page) -> None:
 
 
 @on_the_page
-async def test_the_story_is_told_when_its_tab_is_opened_and_on_request(page) -> None:
+async def test_the_story_appears_when_its_tab_is_opened_and_on_request(page) -> None:
     page.mas.agent("bob").post_goal("unknown")
     await page.wait_for("document.querySelector('#log').innerText.includes('!unknown')")
     assert await page.texts("#story li") == []

@@ -29,7 +29,7 @@ from jacaros.agents.language.cursor import ProgramNames, SyntaxPanic
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span
 from jacaros.agents.language.lowering import fresh_names, lower
 from jacaros.agents.language.nodes import is_ground, rebuilt
-from jacaros.agents.language.offers import offer_of
+from jacaros.agents.language.offer_directive import offer_of
 from jacaros.agents.language.plan_parser import PlanParser
 from jacaros.agents.language.program_parser import ProgramParser, WrongDirective
 from jacaros.agents.language.term_parser import Namespaces

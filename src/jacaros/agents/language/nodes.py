@@ -12,13 +12,11 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import KW_ONLY, dataclass, field, fields
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Final, TypeVar, dataclass_transform
+from typing import Any, ClassVar, Final, TypeVar, dataclass_transform
 
 from jacaros.agents.language.diagnostics import Span
+from jacaros.agents.language.offers import Offer
 from jacaros.agents.terms.values import Term as Value
-
-if TYPE_CHECKING:
-    from jacaros.agents.language.offers import Offer
 
 
 @dataclass_transform(frozen_default=True)

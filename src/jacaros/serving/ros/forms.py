@@ -132,7 +132,7 @@ def facts_as_json(facts: Facts) -> Fields:
 
 
 def newest_fact(codec: OfferCodec, now: Callable[[], float]) -> Callable[[Facts], Fields | None]:
-    """Return a function that returns the fields of the message for beliefs: the newest one; None if there is none."""
+    """Return a function that returns the fields of the message for beliefs: the newest one, or None."""
 
     def fields(facts: Facts) -> Fields | None:
         return codec.message(facts[-1], now()) if facts else None
