@@ -245,22 +245,18 @@ def facts_for_goals(program: nodes.Program) -> Iterator[Diagnostic]:
 
 def bypassed_plans(programs: Sequence[nodes.Program]) -> Iterator[Diagnostic]:
     """Warn of actions, if a plan for the goal of that name handles their failure, and no program posts it."""
-    bypassing: list[nodes.Literal] = []
+    bypassing: list[nodes.Literal | nodes.Variable] = []
     for program in programs:
         handled = {_key(literal) for _, literal in _of_goals(program.plans, "+")}
         handled &= {_key(literal) for _, literal in _of_goals(program.plans, "-")}
         for plan, in_plan in program.in_plans if handled else ():
-            actions = (step.action for step in in_plan.of(nodes.ExternalAction))
-            bypassing += [
-                each
-                for each in actions
-                if isinstance(each, nodes.Literal)
-                and _key(each) in handled
-                and not _is_for(plan.trigger, _key(each))
-            ]
+            for action in (step.action for step in in_plan.of(nodes.ExternalAction)):
+                key = _key(action) if isinstance(action, nodes.Literal) else ("", 0)
+                if key in handled and not _is_for(plan.trigger, key):
+                    bypassing.append(action)
     posts = Posts(*(program.found for program in programs if bypassing))
     for action in bypassing:
-        if not posts.may_post(_key(action)):
+        if isinstance(action, nodes.Literal) and not posts.may_post(_key(action)):
             name = action.functor
             message = f"`{name}` is the operation, and nothing posts `!{name}`, which handles its failure"
             yield problem("missing-mark", message, action.span, did_you_mean([f"!{name}"]))
