@@ -9,7 +9,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Awaitable, Callable, Coroutine, Hashable
-from concurrent.futures import Future
+from concurrent.futures import Future, InvalidStateError
 from contextlib import suppress
 from functools import partial
 from typing import Any, Generic, TypeVar
@@ -61,6 +61,8 @@ class Crossing:
         done: Future[T] = Future()
 
         def start() -> None:
+            if done.cancelled():
+                return  # the door no longer wants it
             task = self._loop.create_task(function(*args))
             task.add_done_callback(partial(_pass_on, done))
             done.add_done_callback(lambda _: self._stop(task))
@@ -108,14 +110,13 @@ def _call(function: Callable[..., T], args: tuple[Any, ...], done: "Future[T]") 
 
 
 def _pass_on(done: "Future[T]", task: "asyncio.Task[T]") -> None:
-    if done.cancelled():
-        return
-    if task.cancelled():
-        done.set_exception(RequestError("ended", "the run has ended"))
-    elif (error := task.exception()) is not None:
-        done.set_exception(error)
-    else:
-        done.set_result(task.result())
+    with suppress(InvalidStateError):  # the door no longer wants it
+        if task.cancelled():
+            done.set_exception(RequestError("ended", "the run has ended"))
+        elif (error := task.exception()) is not None:
+            done.set_exception(error)
+        else:
+            done.set_result(task.result())
 
 
 class Lagging(Exception):
@@ -126,12 +127,12 @@ class Outbox(Generic[M]):
     """Messages for one reader, in order. Any thread may add messages; memory is bounded.
 
     Args:
-        loop: the loop of the reader.
+        loop: the loop of the reader, which runs in this thread.
         most: maximum number of messages.
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop, most: int = MOST_KEPT) -> None:
-        self._loop, self._most = loop, most
+        self._loop, self._most, self._thread = loop, most, threading.get_ident()
         self._messages: dict[Hashable, M] = {}
         self._number = 0
         self._lock = threading.Lock()
@@ -151,7 +152,11 @@ class Outbox(Generic[M]):
             if len(self._messages) > self._most:
                 self._lags = True
                 self._messages.clear()
-        if is_first and not self._loop.is_closed():
+        if not is_first:
+            return
+        if threading.get_ident() == self._thread:
+            self._arrived.set()
+        elif not self._loop.is_closed():
             self._loop.call_soon_threadsafe(self._arrived.set)
 
     async def take(self) -> list[M]:

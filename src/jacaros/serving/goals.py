@@ -75,7 +75,9 @@ class RequestedGoal:
         self.ended: float | None = None
         self._watched: WatchedGoal | None = None
         self._cleaning: asyncio.Task[None] | None = None
-        self._end: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        loop = asyncio.get_running_loop()
+        self._decision: asyncio.Future[None] = loop.create_future()
+        self._end: asyncio.Future[None] = loop.create_future()
 
     # ---- what callers see
 
@@ -119,6 +121,10 @@ class RequestedGoal:
     async def wait(self) -> None:
         """Wait for its end."""
         await asyncio.shield(self._end)
+
+    async def decided(self) -> None:
+        """Wait until it is no longer pending."""
+        await asyncio.shield(self._decision)
 
     # ---- its life
 
@@ -247,6 +253,8 @@ class RequestedGoal:
     def _enter(self, state: str) -> None:
         if self.state != state:
             self.state = state
+            if state != PENDING and not self._decision.done():
+                self._decision.set_result(None)
             self._changed(self)
 
     def _finish(self, state: str) -> None:

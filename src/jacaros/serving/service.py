@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from jacaros.agents.language.offers import Offer
+from jacaros.agents.language.offers import OBSERVER, OPERATOR, USER, Offer
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.values import Annotated, String, structure
@@ -19,6 +19,7 @@ from jacaros.runtime.clock import of_run, start_thread
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.mas.system import System
 from jacaros.runtime.trace import Cause
+from jacaros.serving import artifacts
 from jacaros.serving.agent import OfferingAgent, OnFacts
 from jacaros.serving.arguments import Data, check_terms, literal_of, parsed, terms_of
 from jacaros.serving.callers import Allowance, Caller, RequestError
@@ -379,6 +380,27 @@ class Session:
         else:
             make()
         mind.architecture.ready()
+
+    # ---- artifacts, and questions of agents to a person
+
+    def artifacts(self) -> list[dict[str, str]]:
+        """Return names, paths and types of all artifacts, to an operator."""
+        with self._request():
+            self.caller.require(OPERATOR)
+            return artifacts.artifacts(self._service.system.environment)
+
+    def questions(self) -> list[dict[str, Any]]:
+        """Return the open questions of agents to a person."""
+        with self._request():
+            self.caller.require(OBSERVER)
+            return artifacts.questions(self._service.system.environment)
+
+    async def answer(self, id: str, given: str | int) -> None:
+        """Answer a question to a person with a text, or with the number of an option."""
+        with self._request():
+            self.caller.require(USER)
+            self._service.note(self.caller, f"answers question {id[:80]}: {str(given)[:200]}")
+            await artifacts.answer(self._service.system.environment, id, given, str(self.caller))
 
     # ---- events and explanations
 

@@ -39,6 +39,7 @@ from jacaros.runtime.cli.options import (
     view_options,
 )
 from jacaros.runtime.cli.outputs import OUTPUT_GONE, RECORD_LIMIT, RequestedOutputs, has_display, write_output
+from jacaros.runtime.cli.serving import RequestedService, serve_options
 from jacaros.runtime.cli.usage import examples, listed, not_found, usage_error
 from jacaros.runtime.files.texts import is_file
 from jacaros.runtime.input import LineInput
@@ -66,6 +67,7 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
         "jacaros run house.jcm --clock fast --seed 1 --until-idle",
         "jacaros run robot.asl --mapping robot.yaml --ros ros2 --guard",
         "jacaros run house.jcm --record run.jsonl",
+        "jacaros run robot.asl --world house --serve 8000",
         "jacaros run house.jcm --all-nodes",
     ),
 )
@@ -140,6 +142,7 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
     name="explained",
 )
 @view_options
+@serve_options
 @option("--quiet", "Print only warnings and errors.")
 def command(
     file: Path,
@@ -163,6 +166,8 @@ def command(
     check_file(file)
     outputs = RequestedOutputs.taken_from(given)
     outputs.check()
+    service = RequestedService.taken_from(given)
+    service.check()
     if explained:
         from jacaros.look.why.patterns import QuestionPattern  # here: few runs are explained
 
@@ -194,6 +199,8 @@ def command(
         raise usage_error("--lifecycle needs a ROS 2 graph", "add --ros ros2")
     if all_nodes:
         options.check()
+        if service.serve is not None:
+            raise usage_error("--serve serves one node", "name it: --node NAME instead of --all-nodes")
         return _run_nodes(project, outputs, options.fleet_keys)
     console = StandardConsole(
         "warning" if quiet else "info", patience=FAST_PATIENCE if options.fast else PATIENCE
@@ -202,7 +209,11 @@ def command(
         console.log(each)
     code = 1
     try:
-        open_doors = partial(_open_to_ros, offer=offer, lifecycle=lifecycle)
+
+        def open_doors(mas: System) -> None:
+            service.begin(mas, console.log)
+            _open_to_ros(mas, offer=offer, lifecycle=lifecycle)
+
         code = _launch(project, options, console, outputs, explained, open_doors)
         return code
     finally:
@@ -287,8 +298,8 @@ def _open_to_ros(mas: System, offer: bool, lifecycle: bool) -> None:
 
 def report_idleness(mas: System) -> None:
     """Log once that the run has nothing left to do, if nothing from outside can change that."""
-    if mas.options.real_graph or mas.options.fleet is not None:
-        return  # any message may wake an agent
+    if mas.options.real_graph or mas.options.fleet is not None or mas.service is not None:
+        return  # any message or request may wake an agent
 
     def idle() -> None:
         stop()

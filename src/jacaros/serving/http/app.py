@@ -1,0 +1,342 @@
+"""The resources: agents, goals, beliefs, questions, events, explanations and artifacts."""
+
+import asyncio
+from collections.abc import AsyncIterator, Callable, Coroutine, Mapping
+from contextlib import suppress
+from functools import partial
+from math import isfinite, nan
+from typing import Any, TypeVar
+from urllib.parse import quote
+
+from starlette.applications import Starlette
+from starlette.exceptions import HTTPException
+from starlette.requests import HTTPConnection, Request
+from starlette.responses import Response, StreamingResponse
+from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
+from starlette.types import ASGIApp
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from jacaros.serving.arguments import reasons_of
+from jacaros.serving.callers import RequestError
+from jacaros.serving.crossing import Lagging
+from jacaros.serving.goals import REFUSED_STATE, RequestedGoal
+from jacaros.serving.http import problems
+from jacaros.serving.http.clients import Client, Clients, Stream, encoded
+from jacaros.serving.http.guard import arguments_of, caller_of
+from jacaros.serving.http.openapi import described, document
+from jacaros.serving.http.problems import HEADERS, problem
+from jacaros.serving.service import Session
+
+SOON = 0.25
+"""Seconds that the response to a new goal waits for the agent to accept or refuse it."""
+LONGEST_WAIT = 60.0
+"""Maximum seconds of ``Prefer: wait=N``."""
+SHOWN, MOST_SHOWN = 100, 1_000
+"""Default and maximum number of goals in a list."""
+MOST_WATCHED = 50
+"""Maximum number of beliefs that one event stream watches."""
+HEARTBEAT = 15.0
+"""Seconds of silence after which an event stream sends a comment, to notice dead clients."""
+
+
+class Resources:
+    """The endpoints.
+
+    Args:
+        clients: who calls.
+        title: name of the run.
+    """
+
+    def __init__(self, clients: Clients, title: str) -> None:
+        self._clients, self._title = clients, title
+
+    def app(self, mounts: Mapping[str, ASGIApp]) -> Starlette:
+        """Return the application, with further ones below their paths."""
+
+        def route(method: str, path: str, endpoint: Callable[[Request, Client], Any]) -> Route:
+            async def answer(request: Request) -> Response:
+                found: Response = await endpoint(request, self._client(request))
+                return found
+
+            return Route(path, answer, methods=[method])
+
+        routes: list[BaseRoute] = [
+            route("GET", "/openapi.json", self.openapi),
+            route("GET", "/agents", self.agents),
+            route("GET", "/agents/{agent}", self.agent),
+            route("POST", "/agents/{agent}/goals/{name}", self.achieve),
+            route("GET", "/agents/{agent}/beliefs/{name}", self.beliefs),
+            route("POST", "/agents/{agent}/beliefs/{name}", partial(self.tell, untell=False)),
+            route("DELETE", "/agents/{agent}/beliefs/{name}", partial(self.tell, untell=True)),
+            route("POST", "/agents/{agent}/questions/{name}", self.query),
+            route("GET", "/goals", self.goals),
+            route("GET", "/goals/{id}", self.goal),
+            route("DELETE", "/goals/{id}", self.cancel),
+            route("GET", "/events", self.events),
+            WebSocketRoute("/events", self.socket),
+            route("GET", "/why", self.why),
+            route("GET", "/artifacts", self.artifacts),
+            route("GET", "/questions", self.questions),
+            route("POST", "/questions/{id}", self.answer),
+            *(Mount(path, app) for path, app in mounts.items()),
+        ]
+        handlers: dict[Any, Any] = {
+            RequestError: problems.on_request_error,
+            HTTPException: problems.on_http_error,
+            Exception: problems.on_defect,
+        }
+        return Starlette(routes=routes, exception_handlers=handlers)
+
+    def _client(self, connection: "HTTPConnection[Any]") -> Client:
+        return self._clients.of(caller_of(connection))
+
+    # ---- what is offered
+
+    async def openapi(self, _: Request, client: Client) -> Response:
+        """``GET /openapi.json``: this interface, for the caller."""
+
+        def found(session: Session) -> dict[str, Any]:
+            return document(self._title, {name: session.offers(name) for name in session.agents()})
+
+        return _json(await client.do(found))
+
+    async def agents(self, _: Request, client: Client) -> Response:
+        """``GET /agents``."""
+        names = await client.do(Session.agents)
+        return _json({"agents": [{"name": each, "url": f"/agents/{quote(each, '')}"} for each in names]})
+
+    async def agent(self, request: Request, client: Client) -> Response:
+        """``GET /agents/A``: what it offers to the caller."""
+        name = request.path_params["agent"]
+        return _json(described(name, await client.do(lambda session: session.offers(name))))
+
+    # ---- goals
+
+    async def achieve(self, request: Request, client: Client) -> Response:
+        """``POST /agents/A/goals/G``: give it a goal."""
+        given, wait = await arguments_of(request), _wait(request)
+        agent, name = request.path_params["agent"], request.path_params["name"]
+        goal = await client.do(lambda session: session.achieve(agent, name, given))
+
+        async def settled(_: Session) -> dict[str, Any]:
+            await (goal.wait() if wait else goal.decided())
+            return goal.data()
+
+        data = await _within(request, client.wait(settled), wait or SOON)
+        if data is None:
+            data = await client.do(lambda _: goal.data())
+        place = f"/goals/{goal.id}"
+        if data["state"] == REFUSED_STATE:
+            return problem("refused", goal.message, reasons_of(goal.reasons), goal=place)
+        return _json(data, 201, {"Location": place, **_applied(wait)})
+
+    async def goals(self, request: Request, client: Client) -> Response:
+        """``GET /goals``: the newest goals of the caller, or of all callers for an operator."""
+        limit = min(_number(request, "limit", SHOWN), MOST_SHOWN)
+        agent = request.query_params.get("agent")
+
+        def newest(session: Session) -> list[dict[str, Any]]:
+            found = [each for each in session.goals() if agent in (None, each.agent)]
+            return [each.data() for each in found[-limit:]]
+
+        return _json({"goals": await client.do(newest)})
+
+    async def goal(self, request: Request, client: Client) -> Response:
+        """``GET /goals/ID``."""
+        id, wait = request.path_params["id"], _wait(request)
+        goal = await client.do(lambda session: session.goal(id))
+        return await self._shown(request, client, goal, wait)
+
+    async def cancel(self, request: Request, client: Client) -> Response:
+        """``DELETE /goals/ID``: cancel it."""
+        id, wait = request.path_params["id"], _wait(request)
+        goal = await client.do(lambda session: session.cancel(id))
+        return await self._shown(request, client, goal, wait, 202)
+
+    async def _shown(
+        self, request: Request, client: Client, goal: RequestedGoal, wait: float, alive: int = 200
+    ) -> Response:
+        """Return a goal, when it has ended or the time to wait for that is over."""
+        if wait:
+            await _within(request, client.wait(lambda _: goal.wait()), wait)
+        data = await client.do(lambda _: goal.data())
+        return _json(data, alive if data["ended"] is None else 200, _applied(wait))
+
+    # ---- beliefs and questions
+
+    async def beliefs(self, request: Request, client: Client) -> Response:
+        """``GET /agents/A/beliefs/B``."""
+        agent, name = request.path_params["agent"], request.path_params["name"]
+        return _json({"beliefs": await client.do(lambda session: session.beliefs(agent, name))})
+
+    async def tell(self, request: Request, client: Client, untell: bool) -> Response:
+        """``POST`` and ``DELETE /agents/A/beliefs/B``: tell a belief, or take it back."""
+        given = await arguments_of(request)
+        agent, name = request.path_params["agent"], request.path_params["name"]
+        await client.do(lambda session: session.tell(agent, name, given, untell))
+        return Response(status_code=204, headers=HEADERS)
+
+    async def query(self, request: Request, client: Client) -> Response:
+        """``POST /agents/A/questions/Q``: ask it."""
+        given = await arguments_of(request)
+        agent, name = request.path_params["agent"], request.path_params["name"]
+        return _json({"answers": await client.do(lambda session: session.query(agent, name, given))})
+
+    async def why(self, request: Request, client: Client) -> Response:
+        """``GET /why?question=…&at=…``: explain the run."""
+        question = request.query_params.get("question", "")
+        at = _real(request, "at")
+        found = await _within(request, client.wait(lambda session: session.why(question, at)), LONGEST_WAIT)
+        if found is None:
+            raise RequestError("unanswerable", f"the explanation takes longer than {LONGEST_WAIT:g} s")
+        return _json({**found.data(), "text": found.text()})
+
+    # ---- artifacts, and questions to a person
+
+    async def artifacts(self, _: Request, client: Client) -> Response:
+        """``GET /artifacts``."""
+        return _json({"artifacts": await client.do(Session.artifacts)})
+
+    async def questions(self, _: Request, client: Client) -> Response:
+        """``GET /questions``: open questions of agents to a person."""
+        return _json({"questions": await client.do(Session.questions)})
+
+    async def answer(self, request: Request, client: Client) -> Response:
+        """``POST /questions/ID``: answer one, with ``{"text": …}`` or ``{"option": N}``."""
+        match await arguments_of(request):
+            case {"text": str(given)} | {"option": int(given)}:
+                pass
+            case _:
+                raise RequestError("invalid_arguments", 'expected {"text": "…"} or {"option": N}')
+        id = request.path_params["id"]
+        await client.wait(lambda session: session.answer(id, given))
+        return Response(status_code=204, headers=HEADERS)
+
+    # ---- events
+
+    async def events(self, request: Request, client: Client) -> Response:
+        """``GET /events``: server-sent events."""
+        stream, stop = await client.begin(_beliefs(request))
+
+        async def lines() -> AsyncIterator[str]:
+            try:
+                yield ": connected\n\n"
+                async for each in _messages(stream):
+                    yield f"data: {each}\n\n" if each else ":\n\n"
+            finally:
+                await asyncio.shield(client.end(stream, stop))
+
+        return StreamingResponse(lines(), headers=HEADERS, media_type="text/event-stream")
+
+    async def socket(self, socket: WebSocket) -> None:
+        """The same events over a WebSocket."""
+        client = self._client(socket)
+        try:
+            stream, stop = await client.begin(_beliefs(socket))
+        except RequestError as error:
+            await socket.send_denial_response(problems.of_error(error))
+            return
+        try:
+            await socket.accept()
+            reading = asyncio.create_task(_until_closed(socket, stream))
+            async for each in _messages(stream):
+                if each:
+                    await socket.send_text(each)
+            reading.cancel()
+            await socket.close(1001)
+        except (WebSocketDisconnect, RuntimeError):
+            pass  # the client has gone
+        finally:
+            await asyncio.shield(client.end(stream, stop))
+
+
+async def _until_closed(socket: WebSocket, stream: Stream) -> None:
+    """Ignore what the client sends, and end the stream when it closes the connection."""
+    with suppress(WebSocketDisconnect, RuntimeError):
+        while (await socket.receive())["type"] != "websocket.disconnect":
+            pass
+    stream.put(None)
+
+
+async def _messages(stream: Stream) -> AsyncIterator[str]:
+    """Yield the events of a stream until its end, and empty texts in times of silence."""
+    while True:
+        try:
+            async with asyncio.timeout(HEARTBEAT):
+                found = await stream.take()
+        except TimeoutError:
+            yield ""
+            continue
+        except Lagging:
+            yield encoded({"event": "lagging"})
+            return
+        for each in found:
+            if each is None:
+                return
+            yield each
+
+
+T = TypeVar("T")
+
+
+async def _within(request: Request, work: Coroutine[Any, Any, T], seconds: float) -> T | None:
+    """Return the result of *work*, or None if it takes longer, or the client leaves."""
+    working, leaving = asyncio.create_task(work), asyncio.create_task(_left(request))
+    try:
+        await asyncio.wait((working, leaving), timeout=seconds, return_when=asyncio.FIRST_COMPLETED)
+        return working.result() if working.done() else None
+    finally:
+        working.cancel()
+        leaving.cancel()
+
+
+async def _left(request: Request) -> None:
+    """Wait until the client closes the connection."""
+    while (await request.receive())["type"] != "http.disconnect":
+        pass
+
+
+def _json(data: Mapping[str, Any], status: int = 200, headers: Mapping[str, str] | None = None) -> Response:
+    return Response(encoded(data), status, {**HEADERS, **(headers or {})}, "application/json")
+
+
+def _wait(request: Request) -> float:
+    """Return the seconds of ``Prefer: wait=N``; 0 without it."""
+    for each in request.headers.get("prefer", "").split(","):
+        name, _, value = each.strip().partition("=")
+        if name == "wait" and value.isdecimal():
+            return min(float(value), LONGEST_WAIT)
+    return 0.0
+
+
+def _applied(wait: float) -> Mapping[str, str]:
+    return {"Preference-Applied": f"wait={wait:g}"} if wait else {}
+
+
+def _number(request: Request, name: str, default: int) -> int:
+    found = _real(request, name)
+    return default if found is None else max(1, int(found))
+
+
+def _real(request: Request, name: str) -> float | None:
+    written = request.query_params.get(name)
+    try:
+        found = None if written is None else float(written)
+    except ValueError:
+        found = nan
+    if found is not None and not isfinite(found):
+        raise RequestError("invalid_arguments", f"`{name}` must be a number")
+    return found
+
+
+def _beliefs(connection: "HTTPConnection[Any]") -> list[tuple[str, str]]:
+    """Return the agents and beliefs in ``?beliefs=robot.battery,robot.place``."""
+    found = []
+    for each in ",".join(connection.query_params.getlist("beliefs")).split(","):
+        agent, dot, name = each.strip().rpartition(".")
+        if each.strip() and not (dot and agent):
+            raise RequestError("invalid_arguments", f"expected ?beliefs=AGENT.BELIEF, found `{each[:80]}`")
+        found += [(agent, name)] if dot else []
+    if len(found) > MOST_WATCHED:
+        raise RequestError("too_large", f"one stream watches at most {MOST_WATCHED} beliefs")
+    return found

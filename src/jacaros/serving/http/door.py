@@ -1,0 +1,143 @@
+"""The HTTP server of a run, in a thread of its own."""
+
+import asyncio
+import os
+import socket
+from collections.abc import Callable, Mapping
+from contextlib import AbstractAsyncContextManager, AsyncExitStack
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import uvicorn
+from starlette.types import ASGIApp
+
+from jacaros.runtime.mas.system import System
+from jacaros.serving import running
+from jacaros.serving.access import LOOPBACK, Hosts, listening_socket
+from jacaros.serving.crossing import Crossing, DoorThread
+from jacaros.serving.http.app import Resources
+from jacaros.serving.http.clients import Clients
+from jacaros.serving.http.guard import LARGEST, Guard
+from jacaros.serving.http.protocol import MOST_CONNECTIONS, LimitedConnection, LimitedWebSocket
+from jacaros.serving.running import RunningService
+from jacaros.serving.service import service_of
+from jacaros.serving.tokens import Tokens
+
+GOODBYE = 1
+"""Seconds for the last responses and events when the run ends."""
+LARGEST_HEADER = 16 * 1024
+"""Maximum size of the header of a request, in bytes."""
+MountedApp = Callable[[Crossing], AbstractAsyncContextManager[ASGIApp]]
+"""Makes a further application of the same server on its loop. Its requests have passed the `Guard`."""
+
+
+@dataclass(frozen=True)
+class Address:
+    """Where to serve.
+
+    Attributes:
+        host: address of this machine.
+        port: port; 0 for a free one.
+        certificate, key: files for TLS, or None.
+    """
+
+    host: str = LOOPBACK
+    port: int = 0
+    certificate: Path | None = None
+    key: Path | None = None
+
+
+class HttpDoor:
+    """Serves a run over HTTP until it ends.
+
+    Args:
+        system: the run; already started.
+        address: where to serve.
+        tokens: who may call. None: only who has the random `token`.
+        mounts: further applications by path.
+
+    Attributes:
+        url: where it serves.
+        token: a random token of an operator.
+
+    Raises:
+        UsageError: the address cannot be used.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        address: Address,
+        tokens: Tokens | None = None,
+        mounts: Mapping[str, MountedApp] | None = None,
+    ) -> None:
+        self._system, self._address, self._mounts = system, address, mounts or {}
+        self._tokens = tokens or Tokens({})
+        self.token = self._tokens.new("operator")
+        self._service = service_of(system)
+        help = "choose another address: --serve [ADDRESS:]PORT"
+        self._socket = listening_socket("HTTP", address.host, address.port, help, MOST_CONNECTIONS)
+        self.url = _url(self._socket, address.certificate is not None)
+        certificate = "" if address.certificate is None else str(address.certificate.resolve())
+        service = RunningService(system.deployment.name, os.getpid(), self.url, self.token, certificate)
+        self._file = running.write(service)
+        self._thread = DoorThread("jacaros http", self._serve, self._failed)
+        system.close_last(self.close)
+
+    async def close(self) -> None:
+        """Send the last responses and events, and disconnect all clients."""
+        await self._thread.close()
+        self._socket.close()
+        if self._file is not None:
+            running.remove(self._file)
+            self._file = None
+
+    def _failed(self, error: Exception) -> None:
+        told = f"error: HTTP server: {type(error).__name__}: {error}"
+        self._system.console.log(told, "error")
+
+    async def _serve(self, crossing: Crossing) -> None:
+        clients = Clients(crossing, self._service)
+        async with AsyncExitStack() as stack:
+            mounts = {
+                path: await stack.enter_async_context(make(crossing)) for path, make in self._mounts.items()
+            }
+            app = Resources(clients, self._system.deployment.name).app(mounts)
+            guard = Guard(app, Hosts(self._address.host), self._tokens, self._failed)
+            server = uvicorn.Server(self._config(guard))
+            serving = asyncio.create_task(server.serve([self._socket]))
+            looking = asyncio.create_task(clients.look())
+            try:
+                await asyncio.shield(serving)
+            except asyncio.CancelledError:
+                clients.close()
+                server.should_exit = True
+                await serving
+            finally:
+                looking.cancel()
+
+    def _config(self, app: ASGIApp) -> uvicorn.Config:
+        return uvicorn.Config(
+            app,
+            http=partial(LimitedConnection, idle={}),  # type: ignore[arg-type]  # any factory will do
+            ws=LimitedWebSocket,
+            ws_max_size=LARGEST,
+            lifespan="off",
+            log_config=None,
+            log_level="critical",
+            access_log=False,
+            proxy_headers=False,
+            server_header=False,
+            timeout_graceful_shutdown=GOODBYE,
+            ssl_certfile=self._address.certificate,
+            ssl_keyfile=self._address.key,
+            h11_max_incomplete_event_size=LARGEST_HEADER,
+        )
+
+
+def _url(listening: socket.socket, tls: bool) -> str:
+    host, port = listening.getsockname()[:2]
+    if host in ("0.0.0.0", "::"):
+        host = socket.gethostname()
+    return f"http{'s' * tls}://{f'[{host}]' if ':' in host else host}:{port}"

@@ -1,0 +1,98 @@
+"""Limits of connections: their number, and the time for headers, requests and responses."""
+
+import asyncio
+import logging
+from typing import Any
+
+from uvicorn.protocols.http.h11_impl import H11Protocol
+from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+
+from jacaros.serving.http.problems import problem
+
+MOST_CONNECTIONS = 256
+"""Maximum number of connections; a further one replaces the oldest that has not sent a request."""
+HEADER_PATIENCE = 10.0
+"""Seconds in which a connection must send the header of a request."""
+WRITE_PATIENCE = 20.0
+"""Seconds in which a client must accept data."""
+_QUIET = logging.Logger("jacaros.http", logging.CRITICAL + 1)
+"""Logs nothing: what strangers send does not belong in the output of a run."""
+
+
+class _Impatient:
+    """The part of a connection that aborts it when the client does not read."""
+
+    transport: Any
+    _unread: asyncio.TimerHandle | None = None
+
+    def pause_writing(self) -> None:
+        """Wait for the client, for a limited time."""
+        super().pause_writing()  # type: ignore[misc]
+        loop = asyncio.get_running_loop()
+        self._unread = loop.call_later(WRITE_PATIENCE, self.transport.abort)
+
+    def resume_writing(self) -> None:
+        """The client has read."""
+        super().resume_writing()  # type: ignore[misc]
+        if self._unread is not None:
+            self._unread.cancel()
+
+
+class LimitedWebSocket(_Impatient, WebSocketsSansIOProtocol):
+    """A WebSocket."""
+
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self.logger = _QUIET
+
+
+class LimitedConnection(_Impatient, H11Protocol):
+    """A connection for HTTP.
+
+    Args:
+        idle: the connections that wait for the header of their first request, the oldest first.
+    """
+
+    def __init__(self, *arguments: Any, idle: "dict[LimitedConnection, None]", **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self.logger = _QUIET
+        self._idle = idle
+        self._deadline: asyncio.TimerHandle | None = None
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        super().connection_made(transport)  # type: ignore[arg-type]
+        self._idle[self] = None
+        if len(self.connections) > MOST_CONNECTIONS:
+            next(iter(self._idle)).transport.abort()
+        self._look()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        self._idle.pop(self, None)
+        self._stop()
+        super().connection_lost(exc)
+
+    def data_received(self, data: bytes) -> None:
+        super().data_received(data)
+        self._look()
+
+    def _look(self) -> None:
+        """Limit the time until the next request, however slowly data arrives."""
+        if self.scope is not None:
+            self._idle.pop(self, None)
+        if self.scope is not None and (self.cycle is None or not self.cycle.response_complete):
+            self._stop()
+        elif self._deadline is None:
+            self._deadline = self.loop.call_later(HEADER_PATIENCE, self.transport.abort)
+
+    def _stop(self) -> None:
+        if self._deadline is not None:
+            self._deadline.cancel()
+            self._deadline = None
+
+    def send_400_response(self, msg: str) -> None:
+        """Answer what is not HTTP."""
+        response = problem("malformed", msg.rstrip(".").lower())
+        response.headers["Connection"] = "close"
+        head = [b"HTTP/1.1 400 Bad Request", *(b"%s: %s" % each for each in response.raw_headers), b"", b""]
+        self.transport.write(b"\r\n".join(head) + bytes(response.body))
+        self.transport.close()
