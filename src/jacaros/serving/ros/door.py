@@ -37,8 +37,8 @@ MOST_CALLERS = 100
 LOOKING, LOOKED_AT = 0.2, 50
 """Seconds of the run's clock between two looks at what agents do for goals, and the maximum number of goals in each."""
 STRING = "std_msgs/msg/String"
-_ROS1_GOAL = re.compile(r"(/[A-Za-z0-9_/]+)-\d+-[\d.]+")
-"""Goal ids of actionlib: name of the node, a number, and the time."""
+_ROS1_GOAL = re.compile(r"(/[A-Za-z0-9_/]+)(?:-[0-9a-f]{8})?-\d+-[\d.]+")
+"""Goal ids of actionlib: name of the node, for nodes of JaCaROS their run, a number, and the time."""
 
 
 def caller_of(goal_id: str) -> str:
