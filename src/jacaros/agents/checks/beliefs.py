@@ -229,7 +229,8 @@ def _mismatch(reader: Reader, same: Sequence[Adder]) -> Iterator[Diagnostic]:
                 f"`{as_written(argument)}` is {_KINDS[wanted.kind]}, but " if wanted.kind not in kinds else ""
             )
             message = f"`{as_written(literal)}` never matches: {is_}{has}"
-            yield problem(MISMATCH, message, argument.span or literal.span, _help(literal, same, place))
+            help = _help(literal, same, place) or _in_kind(argument, given[0])
+            yield problem(MISMATCH, message, argument.span or literal.span, help)
             return
 
 

@@ -33,6 +33,7 @@ from jacaros.agents.checks.goals import (
 from jacaros.agents.checks.handlers import facts_for_goals, unused_handlers
 from jacaros.agents.checks.loops import loops_without_wait
 from jacaros.agents.checks.missed_events import missed_events
+from jacaros.agents.checks.offers import misspelt_choices, wrong_announcements
 from jacaros.agents.checks.unreachable import contexts_never_true, never_selected
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import LEVELS, Diagnostic, SourceFile, Span, problem
@@ -163,6 +164,7 @@ def _mistakes(program: nodes.Program, known: KnownActions, errors: Sequence[Diag
         warnings += never_selected(program, found, known)
         warnings += loops_without_wait(program, found, known)
         warnings += missed_events(program, found, known)
+        warnings += [*wrong_announcements(program, found), *misspelt_choices(program, found)]
         warnings += [*unused_handlers(found, known), *facts_for_goals(program)]
     return warnings
 

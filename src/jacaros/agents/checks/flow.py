@@ -17,7 +17,8 @@ from typing import Final, NamedTuple
 from jacaros.agents.checks.formulas import conditions
 from jacaros.agents.language import nodes
 from jacaros.agents.language.lowering import format_term
-from jacaros.agents.language.nodes import UNDECLARED, Declaration, children
+from jacaros.agents.language.nodes import UNDECLARED, Declaration, children, form_of
+from jacaros.agents.language.offers import Offer, Parameter
 from jacaros.agents.terms.functions import ARITIES
 
 Key = tuple[str, int]
@@ -58,7 +59,8 @@ class Adder:
     """What can make a belief true, or cause its event.
 
     Attributes:
-        how: ``fact``, ``rule``, ``step``, ``message``, ``answer``, ``plan`` (for a test goal), ``property`` or ``signal``.
+        how: ``fact``, ``rule``, ``step``, ``message``, ``answer``, ``plan`` (for a test goal), ``offer`` (callers outside
+            tell it), ``property`` or ``signal``.
         size: number of arguments; None: any.
         values: what is known of them.
         literal: where a program says so.
@@ -79,7 +81,7 @@ class Reader:
     """What asks for a belief, or reacts to its event.
 
     Attributes:
-        how: ``condition``, ``event`` (of a plan or ``.wait``) or ``deletion``.
+        how: ``condition``, ``event`` (of a plan or ``.wait``), ``deletion``, or ``belief`` or ``question`` of an offer.
         clause: the plan, rule or goal that it is in.
         sign: ``+`` or ``-`` of an event.
         denied: whether it is below a ``not``.
@@ -175,6 +177,8 @@ def flows_of(
                 part = shared[id(clause)] = ProgramFlow()
                 collector.collect(part, clause, id(clause) in facts)
             flow.add(shared[id(clause)])
+        for offer in program.offers:
+            collector.collect_offer(flow, offer)
         flows.append(flow)
     return flows
 
@@ -253,6 +257,20 @@ def value_of(term: nodes.Node, variables: Mapping[str, Value]) -> Value:
             name, size = key_of(term)
             return Value("structure", (f"{name}/{size}",)) if size else Value("atom", (name,))
     return UNKNOWN
+
+
+def _declared(parameter: Parameter) -> Value:
+    """Return what the kind of an argument of an offer says of its value."""
+    match parameter.kind:
+        case "any":
+            return UNKNOWN
+        case "boolean":
+            return Value("atom", ("true", "false"))
+        case "integer":
+            return Value("number", whole=True)
+        case "string":
+            return Value("string", tuple([format_term(nodes.String(each)) for each in parameter.choices]))
+    return Value(parameter.kind, parameter.choices)
 
 
 def merged(values: Iterable[Value]) -> Value:
@@ -367,6 +385,18 @@ class _Collector:
         while self._stack:
             node, at = self._stack.pop()
             self._look(node, at)
+
+    def collect_offer(self, found: ProgramFlow, offer: Offer) -> None:
+        """Collect what callers outside may tell, and what they may look at."""
+        literal = form_of(offer)
+        self.found, self._clause = found, literal
+        if offer.what == "tell":
+            values = tuple(map(_declared, offer.parameters))
+            adder = Adder("offer", len(values), values, literal)
+            found.adders.setdefault(offer.name, []).append(adder)
+            found.removed.add(offer.name)
+        elif offer.what in ("belief", "question"):
+            self._read(offer.what, literal)
 
     def _push(self, at: _At, *below: nodes.Node) -> None:
         self._stack += [(node, at) for node in reversed(below)]

@@ -191,7 +191,8 @@ def goals_without_plan(program: nodes.Program, found: ByKind, known: KnownAction
     signatures = [_signature(trigger.literal) for trigger in triggers]
     handled = {each for each in signatures if not isinstance(each[0], nodes.Variable)}
     everywhere = {each[1:] for each in signatures if isinstance(each[0], nodes.Variable)}
-    posted: list[nodes.Node] = [*program.goals, *(step.goal for step in found.of(nodes.Achieve))]
+    posted: list[nodes.Node] = [*program.goals, *program.offered_goals]
+    posted += [step.goal for step in found.of(nodes.Achieve)]
     marks = list(chain.from_iterable(map(labelled, found.of(nodes.Plan))))
     posted += [mark.arguments[0] for mark in marks if mark.functor == "cleanup" and mark.arguments]
     if any(mark.functor == "test" for plan in program.plans for mark in labelled(plan)):

@@ -195,7 +195,7 @@ def never_posted(
         if trigger.span is None or is_test or posts.may_post(_key(literal)) or not is_project(trigger.span):
             continue
         goal = f"{trigger.kind}{_text(_key(literal))}"
-        help = "post it, or remove the plan; from outside, such as from the page, it can still be posted"
+        help = "post it, offer it to callers with `{ offer(goal, ...) }`, or remove the plan"
         yield problem("goal-never-posted", f"no agent of the project posts `{goal}`", trigger.span, help)
 
 
@@ -236,9 +236,8 @@ def facts_for_goals(program: nodes.Program) -> Iterator[Diagnostic]:
             id(each.literal) for each in own.of(nodes.Trigger)
         }
         is_read = any(_key(each) == key and id(each) not in repeated for each in own.of(nodes.Literal))
-        if not is_read and Posts(ByKind(program.beliefs, program.goals, tuple(others))).appears_only_as(
-            facts[key]
-        ):
+        rest = ByKind(program.beliefs, program.goals, program.offered_goals, tuple(others))
+        if not is_read and Posts(rest).appears_only_as(facts[key]):
             message = f"nothing reads the belief `{_text(key)}`, and nothing posts the goal `!{_text(key)}`"
             yield problem("missing-mark", message, facts[key][0].span, did_you_mean([f"!{key[0]}"]))
 

@@ -173,11 +173,12 @@ _CODES: Final[dict[Severity, str]] = {
     "warning": """
         acting-condition capital-constant changed-variable comparison-without-value
         condition-as-step context-never-true event-never-happens java-function loop-without-wait
-        misspelt-annotation misspelt-belief missing-mark never-matches no-effect ordered-atom organisation-library
+        misspelt-annotation misspelt-belief missing-mark never-matches no-effect not-offered ordered-atom
+        organisation-library
         plan-never-selected plan-too-large singleton-variable too-many unknown-artifact-type
-        unknown-belief unknown-code unknown-goal unknown-internal-action unknown-library
+        unknown-belief unknown-choice unknown-code unknown-goal unknown-internal-action unknown-library
         unknown-message-type unknown-operation unknown-performative unknown-property unknown-resource
-        unbound-argument unfocused-artifact unused-handler wrong-arguments wrong-needs
+        unbound-argument unfocused-artifact unused-handler unused-offer wrong-arguments wrong-needs
         wrong-supervision wrong-unit wrong-urgency
     """,
     "note": """

@@ -391,13 +391,27 @@ class Program:
 
     @cached_property
     def found(self) -> ByKind:
-        """All nodes of its beliefs, goals and plans; the checks share this walk."""
-        return ByKind(self.beliefs, self.goals, others=[found for _, found in self.in_plans])
+        """All nodes of its beliefs, goals (offered ones, too) and plans; the checks share this walk."""
+        return ByKind(
+            self.beliefs, self.goals, self.offered_goals, others=[found for _, found in self.in_plans]
+        )
+
+    @cached_property
+    def offered_goals(self) -> tuple[Literal, ...]:
+        """The goals that callers outside may post."""
+        return tuple([form_of(each) for each in self.offers if each.what == "goal"])
 
     @cached_property
     def in_plans(self) -> list[tuple[Plan, ByKind]]:
         """The plans, each with its nodes."""
         return [(plan, ByKind(plan)) for plan in self.plans]
+
+
+def form_of(offer: Offer) -> Literal:
+    """Return what is offered with a variable for each argument, such as ``deliver(Parcel, Room)``."""
+    names = [each.name[:1].upper() + each.name[1:] for each in offer.parameters]
+    variables = tuple([Variable(name, span=offer.span) for name in names])
+    return Literal(offer.name, variables, span=offer.span)
 
 
 @dataclass
@@ -434,7 +448,7 @@ class Declaration:
         condition: index of the argument that is a condition.
         performative: index of the performative, for actions that send messages; the last argument is the content.
         awaits: its arguments in braces are events that it waits for.
-        prints: it only prints its arguments.
+        prints: it only shows its arguments to people or callers.
         brings_in: it adds plans or agents that do not appear in the program.
         changes_plans: it adds or removes plans.
         result_hint: how its author adds an argument for the result; empty for actions that have one or are not in Python.

@@ -172,7 +172,7 @@ def test_marks_of_goals_and_operations_are_distinguished(folder: Path) -> None:
     ]
 
 
-REST = "post it, or remove the plan; from outside, such as from the page, it can still be posted"
+REST = "post it, offer it to callers with `{ offer(goal, ...) }`, or remove the plan"
 
 
 def test_an_operation_of_a_shipped_mapping_is_known_by_its_file(folder: Path) -> None:

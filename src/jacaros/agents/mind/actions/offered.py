@@ -26,7 +26,7 @@ def accept(ctx: Context) -> None:
         callers.accepted(ctx.intention)
 
 
-@internal_action(".refuse", arity=1, body_only=True)
+@internal_action(".refuse", arity=1, body_only=True, prints=True)
 def refuse(ctx: Context, reason: Term) -> None:
     """``.refuse(Reason)`` fails with ``refused(Reason)``; a goal that is not accepted yet counts as refused."""
     del ctx
@@ -44,7 +44,7 @@ def progress(ctx: Context, fraction: Term, note: Term = None) -> None:
         callers.progressed(ctx.intention, done, told)
 
 
-@internal_action(".announce", arity=1, body_only=True)
+@internal_action(".announce", arity=1, body_only=True, prints=True)
 def announce(ctx: Context, event: Term) -> None:
     """``.announce(Event)`` tells callers of an event that the program offers; another one is not tolerated."""
     symbol, callers = functor_of(event), _callers(ctx)

@@ -210,7 +210,8 @@ class _BeliefCheck:
                 return  # it is run with that artifact
             private = [each for flow in self._flow.programs for each in flow.adders.get(name, ())]
             near = _to_be_told(private[0]) if private else did_you_mean(close_matches(name, adders))
-            yield problem(UNKNOWN, message, literal.span, near or self._to_be_added(literal, shipped))
+            rule = f"write a rule: `{as_written(literal)} :- ...`" if reader.how == "question" else ""
+            yield problem(UNKNOWN, message, literal.span, near or rule or self._to_be_added(literal, shipped))
 
     def _to_be_added(self, literal: nodes.Literal, shipped: str) -> str:
         if shipped:
@@ -232,15 +233,26 @@ class _BeliefCheck:
         unsure = doubtful.union(name for name, _ in self._mentioned)
         for flow in self.flows:
             for name, adders in flow.adders.items() if self._knows_artifacts else ():
-                if name not in unsure and name in sizes:
-                    yield from _of_other_size(name, adders, sizes[name])
+                if name not in unsure:
+                    yield from _told_in_vain(name, adders, sizes.get(name, set()))
+                    yield from _of_other_size(name, adders, sizes.get(name, set()))
+
+
+def _told_in_vain(name: str, adders: Sequence[Adder], read: Set[int]) -> Iterator[Diagnostic]:
+    """Return warnings about beliefs that callers outside may tell, and that nothing reads."""
+    for each in adders:
+        if each.how == "offer" and each.size not in read and each.literal is not None:
+            message = f"callers may tell `{name}/{each.size}`, but nothing reads it"
+            help = f"read it in a context, or react to it: `+{as_written(each.literal)} <- ...`"
+            yield problem("unused-offer", message, each.literal.span, help)
 
 
 def _of_other_size(name: str, adders: Sequence[Adder], read: Set[int]) -> Iterator[Diagnostic]:
     """Return warnings about beliefs that are read only with another number of arguments, which they also have."""
     used = read & {each.size for each in adders}
     for each in adders if used else ():
-        if each.size not in read and each.literal is not None and is_own(each.literal):
+        told = each.how == "offer" or each.size in read
+        if not told and each.literal is not None and is_own(each.literal):
             others = ", ".join(f"`{name}/{size}`" for size in sorted(read))
             what = "has a plan `+?`" if each.how == "plan" else "is added"
             message = f"belief `{name}/{each.size}` {what}, but only {others} is read"
