@@ -2,12 +2,16 @@
 
 import dataclasses
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import click
 
+from jacaros.agents.language.diagnostics import AslError, SourceFile
+from jacaros.agents.language.loader import new_names, read_program
+from jacaros.agents.language.offers import Offer
 from jacaros.artifacts.env.artifact import Artifact
 from jacaros.artifacts.env.errors import UnknownArtifactType
 from jacaros.artifacts.env.manual import Manual, describe
@@ -16,6 +20,8 @@ from jacaros.runtime.cli.usage import examples, usage_error
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.files.python_modules import UNSEEN, NotImported, ProjectModules
 from jacaros.runtime.files.texts import is_file
+from jacaros.runtime.mas.agents.programs import SourcePath, text_of
+from jacaros.runtime.mas.agents.python_code import PythonCode
 from jacaros.runtime.mas.deployment import Deployment
 from jacaros.runtime.mas.launch import load_deployment
 
@@ -41,15 +47,17 @@ PROJECT_FILES = (".asl", ".mas2j", ".jcm")
 def command(what: str, project: Path, as_json: bool, imports: bool) -> None:
     """Describe WHAT: an artifact type, a Python file or a mapping file with artifact types, or a project file.
 
-    For an artifact type: its options, observable properties, signals and operations. For a project: its agents,
-    workspaces and artifacts. Python code of the project is read, not run, unless you give --import.
+    For an artifact type: its options, observable properties, signals and operations. For a project: its agents with
+    what they offer to callers, workspaces and artifacts. Python code of the project is read, not run, unless you give
+    --import.
     """
     unseen = None if imports else set[Path]()
     if what.endswith(PROJECT_FILES):
         deployment = load_deployment(what)
         manuals, unknown = _project_types(deployment, unseen)
-        data: Any = _project_data(deployment, manuals)
-        text = "\n".join(_project_lines(deployment, manuals, unknown))
+        offers = _offers(deployment, unseen)
+        data: Any = _project_data(deployment, manuals, offers)
+        text = "\n".join(_project_lines(deployment, manuals, unknown, offers))
     else:
         manuals = [describe(kind) for kind in _kinds(what, project, unseen)]
         described = [dataclasses.asdict(manual) for manual in manuals]
@@ -130,10 +138,48 @@ def _project_types(project: Deployment, unseen: set[Path] | None) -> tuple[list[
     return [describe(kind) for kind in types], unknown
 
 
-def _project_lines(project: Deployment, manuals: list[Manual], unknown: dict[str, str]) -> Iterator[str]:
+Offers = Mapping[Path, Sequence[Offer]]
+"""What the programs of a project offer to callers outside, by file."""
+
+
+def _offers(project: Deployment, unseen: set[Path] | None) -> Offers:
+    folders = (project.base_path, *project.source_paths)
+    code = PythonCode(ProjectModules(*folders, unseen=unseen))
+    names, path = new_names(code.functions, code.actions), SourcePath(folders)
+    found: dict[Path, Sequence[Offer]] = {}
+    for file in {agent.source_path for agent in project.agents if not agent.is_python}:
+        with suppress(AslError):  # a missing file; errors in a program are for `jacaros check`
+            program, _ = read_program(
+                SourceFile(file.as_posix(), text_of(file)), path.include, names.for_program()
+            )
+            found[file] = program.offers
+    return found
+
+
+def _offer_lines(offer: Offer) -> Iterator[str]:
+    yield f"    offers {offer.what} {offer} to {' or '.join(sorted(offer.roles))}{_limits(offer)}"
+    if offer.doc:
+        yield f"      {offer.doc}"
+    yield from (f"      {each.name}: {each.doc}" for each in offer.parameters if each.doc)
+
+
+def _limits(offer: Offer) -> str:
+    if offer.what != "goal":
+        return ""
+    further = {"refuse": "refuses more", "wait": "lets more wait", "replace": "replaces the oldest"}
+    limits = [] if offer.at_most is None else [f"{offer.at_most} at once, {further[offer.when_busy]}"]
+    limits += ["cancelled when its caller leaves"] if offer.when_left == "cancel" else []
+    return "".join(f"; {each}" for each in (*limits, *sorted(offer.hints)))
+
+
+def _project_lines(
+    project: Deployment, manuals: list[Manual], unknown: dict[str, str], offers: Offers
+) -> Iterator[str]:
     yield project.name
     for agent in project.agents:
         yield f"  agent {agent.name}: {agent.source_path}"
+        for offer in offers.get(agent.source_path, ()):
+            yield from _offer_lines(offer)
     for workspace in project.workspaces:
         yield f"  workspace {workspace.name}"
         for artifact in workspace.artifacts:
@@ -145,7 +191,9 @@ def _project_lines(project: Deployment, manuals: list[Manual], unknown: dict[str
         yield f"\n{_for_people(manual)}"
 
 
-def _project_data(project: Deployment, manuals: list[Manual]) -> dict[str, Any]:
+def _project_data(project: Deployment, manuals: list[Manual], offers: Offers) -> dict[str, Any]:
+    from jacaros.serving.arguments import described  # here: other commands do not need it
+
     workspaces = [
         {
             "name": workspace.name,
@@ -155,7 +203,16 @@ def _project_data(project: Deployment, manuals: list[Manual]) -> dict[str, Any]:
     ]
     return {
         "name": project.name,
-        "agents": [{"name": agent.name, "source": str(agent.source_path)} for agent in project.agents],
+        "agents": [
+            {
+                "name": agent.name,
+                "source": str(agent.source_path),
+                "offers": [
+                    {"what": each.what, **described(each)} for each in offers.get(agent.source_path, ())
+                ],
+            }
+            for agent in project.agents
+        ],
         "workspaces": workspaces,
         "world": project.world,
         "types": [dataclasses.asdict(manual) for manual in manuals],

@@ -100,6 +100,36 @@ def test_a_project_and_a_program_are_described_with_their_types(folder: Path, to
     assert LAMP in output
 
 
+OFFERS = """
+{ offer(goal, deliver(parcel(string, "What to bring."), room([kitchen, office]), metres(out(number))),
+        doc("Bring a parcel."), role([nurse, user]), at_most(2), when_busy(wait), when_left(cancel), idempotent) }
+{ offer(belief, battery(level(number(0, 100)))) }
+battery(80).
++!deliver(_, _, 3).
+"""
+DESCRIBED = """
+  agent bob: bob.asl
+    offers goal deliver(parcel: string, room: kitchen | office, -> metres: number) to nurse or user\
+; 2 at once, lets more wait; cancelled when its caller leaves; idempotent
+      Bring a parcel.
+      parcel: What to bring.
+    offers belief battery(level: number 0..100) to observer
+"""
+
+
+def test_what_agents_offer_is_described(folder: Path, told: Told) -> None:
+    (folder / "bob.asl").write_text(OFFERS, encoding="utf-8")
+    for what in ("bob.asl", "house.jcm"):
+        assert DESCRIBED in told(what)
+    goal, belief = json.loads(told("house.jcm", "--json"))["agents"][0]["offers"]
+    assert (goal["what"], goal["at_most"], goal["hints"]) == ("goal", 2, ["idempotent"])
+    assert goal["arguments"]["properties"]["room"] == {"type": "string", "enum": ["kitchen", "office"]}
+    assert goal["results"]["required"] == ["metres"]
+    assert belief["arguments"]["properties"]["level"] == {"type": "number", "minimum": 0, "maximum": 100}
+    (folder / "bob.asl").write_text(OFFERS + "+!broken <- .", encoding="utf-8")
+    assert DESCRIBED in told("bob.asl")
+
+
 def test_the_folders_of_a_project_are_searched(folder: Path, told: Told) -> None:
     tools = folder / "src" / "env" / "tools"
     tools.mkdir(parents=True)
