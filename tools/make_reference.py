@@ -51,6 +51,7 @@ GROUPS = (
     "plans",
     "time",
     "agents",
+    "callers",
     "output",
     "functions",
 )
