@@ -13,7 +13,8 @@ from jacaros.runtime.clock import of_run
 from jacaros.serving.callers import RequestError
 
 
-def _all(environment: Environment | None) -> Iterator[tuple[Any, ArtifactId]]:
+def all_artifacts(environment: Environment | None) -> Iterator[tuple[Any, ArtifactId]]:
+    """Yield all artifacts with their workspaces."""
     for workspace in environment.workspaces() if environment is not None else ():
         for artifact in workspace.artifacts():
             yield workspace, artifact
@@ -21,7 +22,10 @@ def _all(environment: Environment | None) -> Iterator[tuple[Any, ArtifactId]]:
 
 def artifacts(environment: Environment | None) -> list[dict[str, str]]:
     """Return names, paths and types of all artifacts."""
-    return [{"name": each.name, "path": each.path, "type": each.type_name} for _, each in _all(environment)]
+    return [
+        {"name": each.name, "path": each.path, "type": each.type_name}
+        for _, each in all_artifacts(environment)
+    ]
 
 
 def questions(environment: Environment | None) -> list[dict[str, Any]]:
@@ -33,7 +37,7 @@ def questions(environment: Environment | None) -> list[dict[str, Any]]:
             "text": text,
             "options": [*map(value_text, options)],
         }
-        for workspace, artifact in _all(environment)
+        for workspace, artifact in all_artifacts(environment)
         if artifact.type_name == "Operator"
         for number, text, options in _open(workspace, artifact)
     ]
@@ -47,6 +51,7 @@ async def answer(environment: Environment | None, id: str, given: str | int, by:
     """Answer a question to a person.
 
     Args:
+        id: name or path of the artifact, ``-``, and the number of the question.
         given: a text, or the number of an option.
         by: who answers.
 
@@ -56,23 +61,33 @@ async def answer(environment: Environment | None, id: str, given: str | int, by:
     name, _, number = id.rpartition("-")
     found = [
         artifact
-        for workspace, artifact in _all(environment)
-        if artifact.type_name == "Operator" and artifact.name == name
+        for workspace, artifact in all_artifacts(environment)
+        if artifact.type_name == "Operator" and name in (artifact.name, artifact.path)
         if any(str(each[0]) == number for each in _open(workspace, artifact))
     ]
     if not found:
         raise RequestError("unknown_question", f"no open question `{id[:80]}`")
     value = given if isinstance(given, str) else Structure("option", (given,))
-    ended: asyncio.Future[OperationOutcome] = asyncio.get_running_loop().create_future()
     assert environment is not None
+    await call(environment, found[0], "answer", (int(number), value), by)
+
+
+async def call(
+    environment: Environment, artifact: ArtifactId, name: str, values: tuple[object, ...], by: str
+) -> None:
+    """Call an operation, and wait for its end.
+
+    Raises:
+        RequestError: it fails.
+    """
+    ended: asyncio.Future[OperationOutcome] = asyncio.get_running_loop().create_future()
 
     def done(outcome: OperationOutcome) -> None:
         if not ended.done():
             ended.set_result(outcome)
 
     with of_run():
-        request = OperationRequest(found[0], "answer", (int(number), value), by, None, done, None)
-        environment.execute(request)
+        environment.execute(OperationRequest(artifact, name, values, by, None, done, None))
     outcome = await ended
     if not outcome.ok:
         why = outcome.message or (value_text(outcome.reason) if outcome.reason is not None else "it failed")

@@ -76,7 +76,7 @@ def ask(mind: Mind, formula: str) -> str:
     try:
         term, names = question(check_text(formula))
     except AslError as error:
-        raise RequestError("invalid_arguments", _first_line(error)) from None
+        raise RequestError("invalid_arguments", first_line(error)) from None
     shown = {name: value for name, value in names.items() if name[0] != "_"}
 
     def answer(view: ReadOnly) -> str:
@@ -101,7 +101,8 @@ def _asked(mind: Mind, answer: Callable[[ReadOnly], T]) -> T:
     return found
 
 
-def _first_line(error: AslError) -> str:
+def first_line(error: AslError) -> str:
+    """Return the first of the messages of an error."""
     return error.diagnostics[0].message if error.diagnostics else str(error)
 
 

@@ -4,16 +4,19 @@ import asyncio
 import secrets
 import time
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, TypeVar
 
 from jacaros.agents.language.offers import OBSERVER, OPERATOR, USER, Offer
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.values import Annotated, String, structure
 from jacaros.look.records import records
+from jacaros.look.records.records import Record
 from jacaros.look.why.explanation import Explanation
+from jacaros.look.why.story import story_of
+from jacaros.look.why.tales import StoryLine
 from jacaros.look.why.why import explain
 from jacaros.runtime.clock import of_run, start_thread
 from jacaros.runtime.errors import UsageError
@@ -22,10 +25,12 @@ from jacaros.runtime.trace import Cause
 from jacaros.serving import artifacts
 from jacaros.serving.agent import OfferingAgent, OnFacts
 from jacaros.serving.arguments import Data, check_terms, literal_of, parsed, terms_of
-from jacaros.serving.callers import Allowance, Caller, RequestError
+from jacaros.serving.callers import Allowance, Caller, RequestError, check_text
+from jacaros.serving.console import Operator, soon
 from jacaros.serving.goals import RequestedGoal
 from jacaros.serving.questions import answers_of, variables_of
 
+T = TypeVar("T")
 KEPT = 1_000
 """Number of goals that are kept after their end, for callers that ask about them later."""
 MOST_ALIVE = 1_000
@@ -51,6 +56,7 @@ class Service:
         self.goals: dict[str, RequestedGoal] = {}
         self.sessions: dict[Session, None] = {}
         self._ended: deque[str] = deque()
+        self._operator: Operator | None = None
         self._explaining = asyncio.Lock()
         self._rested_at = 0.0
         self._end_watch = system.directory.watch(self._agent_changed)
@@ -130,8 +136,15 @@ class Service:
         """Record what a caller has changed."""
         self.system.history().record(records.InterventionRecord(f"{caller}: {what}"))
 
-    async def why(self, question: str, at: float | None = None) -> Explanation:
-        """Answer a question about the run so far, in a thread; explanations take at most a fifth of the time.
+    @property
+    def operator(self) -> Operator:
+        """What operators may do to any agent."""
+        if self._operator is None:
+            self._operator = Operator(self.system)
+        return self._operator
+
+    async def of_records(self, answer: Callable[[Iterable[Record]], T]) -> T:
+        """Answer from the records of the run so far, in a thread; answers take at most a fifth of the time.
 
         Raises:
             RequestError: the question is not understood.
@@ -139,15 +152,15 @@ class Service:
         async with self._explaining:
             known = self.system.keep_history().all()
             try:
-                return await start_thread(lambda: self._explain(known, question, at))
+                return await start_thread(lambda: self._after_a_rest(lambda: answer(known)))
             except UsageError as error:
                 raise RequestError("invalid_arguments", str(error).removeprefix("error: ")) from None
 
-    def _explain(self, known: Any, question: str, at: float | None) -> Explanation:
+    def _after_a_rest(self, answer: Callable[[], T]) -> T:
         time.sleep(max(0.0, self._rested_at - time.monotonic()))
         begun = time.monotonic()
         try:
-            return explain(known, question, at)
+            return answer()
         finally:
             now = time.monotonic()
             self._rested_at = now + REST * (now - begun)
@@ -368,18 +381,31 @@ class Session:
     def _tell(self, agent: OfferingAgent, offer: Offer, arguments: Sequence[Any], untell: bool) -> None:
         literal = literal_of(offer, arguments)
         belief = Annotated(literal, (structure("source", String(str(self.caller))),))
-        mind = agent.mind
-        change = mind.untell if untell else mind.tell
-        self._service.note(self.caller, f"{'untells' if untell else 'tells'} {agent.name} {text(literal)}")
+        what, mind = f"{'untells' if untell else 'tells'} {agent.name} {text(literal)}", agent.mind
+        self._service.note(self.caller, what)
+        cause = self._service.cause(self.caller, what)
+        soon(mind, lambda: (mind.untell if untell else mind.tell)(belief, cause))
 
-        def make(_: object = None) -> None:
-            change(belief)
+    # ---- artifacts, and questions of agents to a person
 
-        if mind.running:
-            mind.do_soon(make)
-        else:
-            make()
-        mind.architecture.ready()
+    def artifacts(self) -> list[dict[str, str]]:
+        """Return names, paths and types of all artifacts, to an operator."""
+        with self._request():
+            self.caller.require(OPERATOR)
+            return artifacts.artifacts(self._service.system.environment)
+
+    def questions(self) -> list[dict[str, Any]]:
+        """Return the open questions of agents to a person."""
+        with self._request():
+            self.caller.require(OBSERVER)
+            return artifacts.questions(self._service.system.environment)
+
+    async def answer(self, id: str, given: str | int) -> None:
+        """Answer a question to a person with a text, or with the number of an option."""
+        with self._request():
+            self.caller.require(USER)
+            self._service.note(self.caller, f"answers question {id[:80]}: {str(given)[:200]}")
+            await artifacts.answer(self._service.system.environment, id, given, self.caller.door)
 
     # ---- artifacts, and questions of agents to a person
 
@@ -417,6 +443,43 @@ class Session:
 
     async def why(self, question: str, at: float | None = None) -> Explanation:
         """Answer a question about the run, such as ``why did the robot stop``."""
+        self._observe()
+        check_text(question)
+        return await self._service.of_records(lambda known: explain(known, question, at))
+
+    async def story(self) -> Sequence[StoryLine]:
+        """Tell the run so far."""
+        self._observe()
+        return await self._service.of_records(lambda known: story_of(known, is_over=False))
+
+    def _observe(self) -> None:
         with self._request():
-            self.caller.require("observer")
-        return await self._service.why(question, at)
+            self.caller.require(OBSERVER)
+
+    # ---- what operators may do to any agent, whatever it offers
+
+    def console(self, agent: str, line: str) -> str:
+        """Execute a line of AgentSpeak for an agent, and return the answer as text.
+
+        ``?Formula`` asks; ``!Goal`` posts a goal, and ``-!Goal`` drops it; ``+B``, ``-B`` and ``-+B`` change beliefs.
+        """
+        with self._operate():
+            question, what = line.lstrip().startswith("?"), f"{agent[:80]}: {line[:200]}"
+            cause = None if question else self._service.cause(self.caller, what)
+            answer = self._service.operator.execute(agent, line, cause)
+            if not question:
+                self._service.note(self.caller, what)
+            return answer
+
+    def send(self, agent: str, performative: str, content: str) -> None:
+        """Send an agent a message from ``you``; a restricted run takes no plans."""
+        with self._operate():
+            what = f"{performative} to {agent[:80]}: {content[:200]}"
+            self._service.operator.send(agent, performative, content, self._service.cause(self.caller, what))
+            self._service.note(self.caller, what)
+
+    @contextmanager
+    def _operate(self) -> Iterator[None]:
+        with self._request():
+            self.caller.require(OPERATOR)
+            yield

@@ -117,9 +117,9 @@ async def live_page(address: str) -> AsyncIterator[LivePage]:
 
 
 @asynccontextmanager
-async def viewed(mas: Mas) -> AsyncIterator[LivePage]:
+async def viewed(mas: Mas, role: str = "operator") -> AsyncIterator[LivePage]:
     """Run a system and connect to its page."""
-    async with mas, view(mas) as address, live_page(address) as page:
+    async with mas, view(mas, role=role) as address, live_page(address) as page:
         page.mas = mas
         yield page
 

@@ -11,11 +11,11 @@ from live_client import LivePage, viewed
 import jacaros
 from jacaros import Mas, Out
 from jacaros.artifacts import Artifact, operation
-from jacaros.look.page.live import run_view
 from jacaros.look.records.records import Record
 from jacaros.look.why.explanation import Explanation
 from jacaros.look.why.why import explain
 from jacaros.robots.artifacts.operator_artifact import Operator
+from jacaros.serving import service
 from played import played
 
 WORLD = """
@@ -68,7 +68,7 @@ async def test_a_belief_is_added_and_removed(page) -> None:
     bob = page.mas.agent("bob")
     await page.done("belief", agent="bob", op="+", text="found(key)")
     assert bob.believes("found(key)")
-    await page.event("intervention", what="bob: +found(key)")
+    await page.event("intervention", what="page:operator: bob: +found(key)")
     await bob.until("not .intend(wait)")
     await page.done("belief", agent="bob", op="-", text="found(key)")
     assert not bob.believes("found(key)")
@@ -131,9 +131,11 @@ async def test_the_answer_to_a_question_of_the_page_is_recorded(page) -> None:
 async def test_the_console_answers(page, line: str, result: str) -> None:
     assert await page.done("console", agent="bob", text=line) == result
     await page.done("belief", agent="bob", op="+", text="last")
-    await page.event("intervention", what="bob: +last")
+    await page.event("intervention", what="page:operator: bob: +last")
     noted = [each["data"]["what"] for each in page.records if each.get("event") == "intervention"]
-    assert noted == ([] if line.startswith("?") else [f"bob: {line}"]) + ["bob: +last"]
+    assert noted == ([] if line.startswith("?") else [f"page:operator: bob: {line}"]) + [
+        "page:operator: bob: +last"
+    ]
 
 
 @pytest.mark.parametrize(
@@ -209,7 +211,7 @@ async def test_a_text_of_a_command_has_a_largest_length(page) -> None:
 @played(commanding, world=WORLD)
 async def test_every_command_is_recorded_whatever_its_fields(page) -> None:
     await page.done("obstacle", x=1, y=1, text="?")
-    await page.event("intervention", what="obstacle x=1 y=1 text=?")
+    await page.event("intervention", what="page:operator: obstacle x=1 y=1 text=?")
 
 
 @played(commanding)
@@ -235,15 +237,15 @@ async def test_a_question_to_a_person_is_answered(page) -> None:
     await page.mas.make_artifact("operator", Operator)
     page.mas.add_agent("eve", '!ask. +!ask <- ask("Where?", [kitchen, hall], Place); +found(Place).')
     await page.event("property", artifact="/main/operator", values=[1, "Where?", ["kitchen", "hall"]])
-    answer = {"artifact": "operator", "question": 1}
     refused = "`attic` is not an answer to question 1: expected kitchen, hall"
-    assert await page.refused("answer", **answer, text="attic") == refused
-    await page.done("answer", **answer, text="2")
+    assert await page.refused("answer", question="operator-1", given="attic") == refused
+    await page.done("answer", question="/main/operator-1", given="2")
     await page.mas.agent("eve").until("found(hall)")
-    await page.event("intervention", what="operator: answer to question 1: 2")
+    await page.event("intervention", what="page:operator: answers question /main/operator-1: 2")
     await page.event("signal", signal="answered(1,hall,page)")
     await page.event("operation", operation='answer(1,"2")', agent="page", state="done")
-    assert await page.refused("answer", **answer, text="1") == "question 1 is not open"
+    refused = await page.refused("answer", question="/main/operator-1", given="1")
+    assert refused == "no open question `/main/operator-1`"
 
 
 @pytest.mark.parametrize(
@@ -276,7 +278,7 @@ async def test_a_robot_is_moved(page) -> None:
     robot = page.mas.world.robot("turtlebot")
     await page.done("move_robot", robot="turtlebot", x=2, y=1, yaw=1.5)
     assert (robot.x, robot.y, robot.yaw) == (2.0, 1.0, 1.5)
-    await page.event("intervention", what="turtlebot moved to (2, 1)")
+    await page.event("intervention", what="page:operator: turtlebot moved to (2, 1)")
     await page.event("robot_placed", robot="turtlebot", x=2.0, y=1.0)
     await page.until(lambda: any(each["robots"][0][:2] == [2, 1] for each in page.of("frame")))
     assert "a wall is in the way" in await page.refused("move_robot", robot="turtlebot", x=0, y=2)
@@ -407,7 +409,7 @@ async def test_the_run_continues_while_a_question_about_it_is_answered(page, mon
         assert may_answer.wait(20)
         return explain(records, question, at)
 
-    monkeypatch.setattr(run_view, "explain", explained)
+    monkeypatch.setattr(service, "explain", explained)
     answer = asyncio.create_task(page.done("why", question="waiting"))
     await asyncio.to_thread(asked.wait, 20)
     await page.done("goal", agent="bob", op="post", text="go(hall)")

@@ -60,6 +60,7 @@ from jacaros.agents.terms.values import (
     functor,
     functor_of,
 )
+from jacaros.runtime.trace import Cause
 
 # The choice of the engine that runs programs: the rules of the language as written, or generated code.
 
@@ -206,13 +207,18 @@ class Mind(Circumstance):
         else:
             belief_update.tell(self, term)
 
-    def post_goal(self, goal: Term) -> None:
-        """Adopt a new goal in an intention of its own."""
+    def post_goal(self, goal: Term, cause: Cause | None = None) -> None:
+        """Adopt a new goal in an intention of its own.
+
+        Args:
+            goal: the goal.
+            cause: what led to it, outside the agent.
+        """
         symbol, arguments, annotations = parts(rename(goal))
         if symbol is None:
             raise ActionError("a goal must be a literal")
         kind = trigger("+", "!", symbol)
-        event = ((kind, *arguments), None, own_annotations(annotations), None)
+        event = ((kind, *arguments), None, own_annotations(annotations), cause)
         deadlines.adopt(self, event)
         self.architecture.ready()
 

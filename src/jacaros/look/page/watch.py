@@ -69,10 +69,10 @@ class Watch:
         """Start sampling."""
         self._drawing = self._scene.drawing() if self._scene is not None else None
         self._show_world(self._drawing or {})
+        for happening in self._history.all() if self._history is not None else ():
+            self.event(*happening)
         self._look()
         if self._history is not None:
-            for happening in self._history.all():
-                self.event(*happening)
             for watcher in self.watchers:
                 self._stop_listening.append(self._history.listen(watcher.event))
             self._history.start()

@@ -241,7 +241,7 @@ def believe(
         raise_event(agent, table.added, row, new, cause=cause)
 
 
-def untell(agent: Circumstance, term: Term) -> bool:
+def untell(agent: Circumstance, term: Term, cause: Cause | None = None) -> bool:
     """Remove a source of a belief; the event is external."""
     symbol, row, annotations = parts(term)
     if symbol is None:
@@ -249,7 +249,7 @@ def untell(agent: Circumstance, term: Term) -> bool:
     annotations = with_source(annotations)
     removed = _remove_first(agent, symbol, row, annotations, bind=False)
     if removed is not None:
-        raise_event(agent, agent.beliefs[symbol].deleted, removed, annotations)
+        raise_event(agent, agent.beliefs[symbol].deleted, removed, annotations, cause=cause)
     return removed is not None
 
 

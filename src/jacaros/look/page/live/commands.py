@@ -1,9 +1,9 @@
 """The commands of pages, by name; each gets a reply, even if it is invalid.
 
-A command is a function: its parameters are the fields of the command, checked by their types.
+A command is a function: its parameters are the fields of the command, checked by their types, and, if it is called
+``session``, the session of the page.
 """
 
-import asyncio
 import inspect
 import re
 from collections.abc import Awaitable, Callable, Mapping
@@ -19,9 +19,7 @@ from jacaros.agents.language.loader import parse_literal
 from jacaros.agents.language.lowering import Variables, lower_value
 from jacaros.agents.terms.values import Var, bare
 from jacaros.artifacts.env.environment import Environment
-from jacaros.artifacts.env.errors import ArtifactId, OperationFailed
-from jacaros.artifacts.env.operation import OperationOutcome, OperationRequest
-from jacaros.artifacts.env.values import Structure
+from jacaros.artifacts.env.errors import OperationFailed
 from jacaros.artifacts.env.values import text as value_text
 from jacaros.look.records.records import FiniteNumber
 from jacaros.robots.world import World
@@ -30,17 +28,15 @@ from jacaros.runtime.clock import of_run
 from jacaros.runtime.errors import JacarosError
 from jacaros.runtime.mas.debugging.debugger import Debugger, StepKind
 from jacaros.runtime.mas.system import System
+from jacaros.serving.artifacts import all_artifacts, call
+from jacaros.serving.callers import LONGEST
+from jacaros.serving.service import Session
 
-LONGEST = 2_000
-"""Maximum number of characters of a text in a command: parsing it takes about 10 ms."""
-YOU = "you"
-"""Caller of operations and sender of messages of the page."""
-PAGE = "page"
-"""Caller of ``answer``: the place where a person answered a question."""
 RADIUS = 0.2
 """Default radius of an obstacle, in metres."""
 
 Given = Mapping[str, Any]
+SESSION = "session"
 Text = Annotated[str, Meta(pattern=r"\S", max_length=LONGEST)]
 Command = Callable[..., Awaitable[Any] | Any]
 """Takes the fields of a command and returns the result; raises `Refused`, `JacarosError` or `OperationFailed`."""
@@ -58,7 +54,7 @@ class Commands:
     """
 
     def __init__(self, note: Callable[[str], None] = lambda _: None) -> None:
-        self._known: dict[str, tuple[Command, type[Struct], bool]] = {}
+        self._known: dict[str, tuple[Callable[..., Any], type[Struct], bool, bool]] = {}
         self._note = note
 
     @property
@@ -69,28 +65,31 @@ class Commands:
     def add(self, commands: Mapping[str, Command], changes: bool = False) -> None:
         """Add commands; if they are *changes* of the run, each success is recorded."""
         for name, command in commands.items():
-            self._known[name] = command, _fields_of(command), changes
+            takes_session = SESSION in inspect.signature(command).parameters
+            self._known[name] = command, _fields_of(command), takes_session, changes
 
-    async def answer(self, given: Given) -> dict[str, Any]:
-        """Execute a command and return the reply."""
+    async def answer(self, given: Given, session: Session | None = None) -> dict[str, Any]:
+        """Execute a command of a page with this session, and return the reply."""
         reply: dict[str, Any] = {"kind": "reply", "id": given.get("id")}
         try:
-            return {**reply, "ok": True, "result": await self._execute(str(given.get("do")), given)}
+            return {**reply, "ok": True, "result": await self._execute(str(given.get("do")), given, session)}
         except (Refused, JacarosError, OperationFailed) as refused:
             return {**reply, "ok": False, "error": one_line(refused)}
         except Exception as error:  # a page must not end the run
             return {**reply, "ok": False, "error": f"{type(error).__name__}: {str(error)[:200]}"}
 
-    async def _execute(self, name: str, given: Given) -> Any:
+    async def _execute(self, name: str, given: Given, session: Session | None) -> Any:
         if name not in self._known:
             raise Refused(f"unknown command here: `{name[:40]}`")
-        command, fields, changes = self._known[name]
+        command, fields, takes_session, changes = self._known[name]
         values = _values(given, fields)
+        if takes_session:
+            values[SESSION] = session
         with of_run():  # tasks started by a command pause with the run
             result = command(**values)
         if inspect.isawaitable(result):
             result = await result
-        if changes and not (name == "console" and values["text"].lstrip().startswith("?")):
+        if changes:
             self._note(said(name, given))
         return result
 
@@ -104,6 +103,7 @@ def _fields_of(command: Command) -> type[Struct]:
             if each.default is each.empty
             else (each.name, each.annotation, each.default)
             for each in parameters
+            if each.name != SESSION
         ],
     )
 
@@ -121,12 +121,7 @@ def _values(given: Given, fields: type[Struct]) -> dict[str, Any]:
 
 
 _SAID = {
-    "belief": "{agent}: {op}{text}",
-    "goal": "{agent}: {op} {text}",
-    "message": "{performative} to {agent}: {text}",
-    "console": "{agent}: {text}",
     "operate": "{artifact}: {text}",
-    "answer": "{artifact}: answer to question {question}: {text}",
     "move_robot": "{robot} moved to ({x}, {y})",
     "battery": "battery of {robot}: {level} %",
     "door": "door {name} open: {open}",
@@ -136,7 +131,7 @@ _SAID = {
 
 
 def said(name: str, given: Given) -> str:
-    """Return a command as a line of text, such as ``bob: +ready``."""
+    """Return a command as a line of text, such as ``battery of turtlebot: 20 %``."""
     fields = {key: str(value)[:200] for key, value in given.items() if key not in ("id", "do")}
     try:
         return _SAID[name].format_map(fields)
@@ -272,55 +267,29 @@ def artifact_commands(system: System) -> Mapping[str, Command]:
             raise Refused("this run has no artifacts")
         return system.environment
 
-    async def operate(artifact: Text, text: Text) -> str:
-        return await _operate(environment(), artifact, text)
+    async def operate(session: Session, artifact: Text, text: Text) -> str:
+        return await _operate(environment(), artifact, text, str(session.caller))
 
-    async def answer(artifact: Text, question: int, text: Text, option: int | None = None) -> None:
-        given = text if option is None else Structure("option", (option,))
-        await _call(environment(), artifact, "answer", (question, given), PAGE)
-
-    return {"operate": operate, "answer": answer}
+    return {"operate": operate}
 
 
-async def _operate(environment: Environment, artifact: str, written: str) -> str:
+async def _operate(environment: Environment, artifact: str, written: str, caller: str) -> str:
     """Call an operation such as ``moveForward(1)``, wait for its end, and return its results as text."""
     names = Variables()
     outputs: Outputs = []
     term: Any = bare(lower_value(parse_literal(written), names.__getitem__))
     name, *arguments = term if term.__class__ is tuple else (term,)
     values = tuple(to_value(each, outputs) for each in arguments)
-    await _call(environment, artifact, name.name, values, YOU)
+    target = next(
+        (each for _, each in all_artifacts(environment) if artifact in (each.path, each.name)), None
+    )
+    if target is None:
+        raise Refused(f"unknown artifact: `{artifact[:80]}`")
+    await call(environment, target, name.name, values, caller)
     results = ((name, _value_of(variable, outputs)) for name, variable in names.items())
     return ", ".join(f"{name} = {value}" for name, value in results)
-
-
-async def _call(
-    environment: Environment, artifact: str, name: str, values: tuple[object, ...], caller: str
-) -> None:
-    """Call an operation, and wait for its end."""
-    target = _find(environment, artifact)
-    ended: asyncio.Future[OperationOutcome] = asyncio.get_running_loop().create_future()
-
-    def done(outcome: OperationOutcome) -> None:
-        if not ended.done():
-            ended.set_result(outcome)
-
-    with of_run():
-        environment.execute(OperationRequest(target, name, values, caller, None, done, None))
-    outcome = await ended
-    if not outcome.ok:
-        why = outcome.message or (value_text(outcome.reason) if outcome.reason is not None else "it failed")
-        raise Refused(why)
 
 
 def _value_of(variable: Var, outputs: Outputs) -> str:
     found = next((out for each, out in outputs if each is variable), None)
     return value_text(found.value) if found is not None and found.is_set else "_"
-
-
-def _find(environment: Environment, artifact: str) -> ArtifactId:
-    for workspace in environment.workspaces():
-        for each in workspace.artifacts():
-            if artifact in (each.path, each.name):
-                return each
-    raise Refused(f"unknown artifact: `{artifact[:80]}`")

@@ -18,6 +18,7 @@ from jacaros.look.records.lasting import Lasting
 from jacaros.look.records.line_format import encoded
 from jacaros.look.records.records import EventLine, Frame, RecordingLine
 from jacaros.runtime.clock import real_time
+from jacaros.serving.service import Session
 
 QUEUED = 10_000
 """Maximum number of records waiting for one page."""
@@ -87,6 +88,7 @@ class Delivery:
 
     Attributes:
         arrived: set while there is something to send.
+        session: the session of the page in a run.
     """
 
     def __init__(self, records: Callable[[], list[LiveRecord]], hello: dict[str, object]) -> None:
@@ -97,6 +99,7 @@ class Delivery:
         self._first: deque[LiveRecord] = deque(records())
         self._missed = 0
         self._again_at = 0.0
+        self.session: Session | None = None
         self.arrived = asyncio.Event()
         self.arrived.set()
 

@@ -1,6 +1,6 @@
 """A run or a recording as shown on live pages: keeps a part of its records, delivers them, and executes commands."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from heapq import merge
 from math import inf
 from operator import attrgetter
@@ -14,6 +14,7 @@ from jacaros.look.records import records
 from jacaros.look.records.recording import Recording
 from jacaros.look.records.records import VERSION, FiniteNumber, Frame
 from jacaros.look.why.why import explain
+from jacaros.serving.service import Session
 
 _NEWEST = ("laser", "believed")
 """Events of which only the newest for each robot matters."""
@@ -26,10 +27,18 @@ class LiveView:
         title: title of the page.
         commands: commands available to pages.
         live: whether the run continues; False for a recording, of which everything is kept.
+        open_session: opens the session of another page.
     """
 
-    def __init__(self, title: str, commands: Commands, live: bool = True) -> None:
+    def __init__(
+        self,
+        title: str,
+        commands: Commands,
+        live: bool = True,
+        open_session: Callable[[], Session | None] = lambda: None,
+    ) -> None:
         self._title, self._commands, self._live = title, commands, live
+        self._open_session = open_session
         self._past = Backlog(EVENTS, FRAMES) if live else Backlog(inf, inf)
         self._deliveries: list[Delivery] = []
         self._number = 0
@@ -110,13 +119,16 @@ class LiveView:
         """Start delivering to another page; its first message has the title, and what the page can do."""
         hello = {"kind": "hello", "version": VERSION, "title": self._title, "live": self._live}
         delivery = Delivery(self._past.records, {**hello, "can": self._commands.names})
+        delivery.session = self._open_session()
         self._deliveries.append(delivery)
         return delivery
 
     def end(self, delivery: Delivery) -> None:
         """Stop delivering to a page."""
         self._deliveries.remove(delivery)
+        if delivery.session is not None:
+            delivery.session.close()
 
-    async def answer(self, command: Mapping[str, Any]) -> Mapping[str, Any]:
+    async def answer(self, delivery: Delivery, command: Mapping[str, Any]) -> Mapping[str, Any]:
         """Execute a command of a page."""
-        return await self._commands.answer(command)
+        return await self._commands.answer(command, delivery.session)

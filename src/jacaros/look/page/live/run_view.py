@@ -2,40 +2,27 @@
 
 import asyncio
 import contextlib
-import time
-from collections.abc import AsyncIterator, Callable, Iterable, Sequence
+from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
-from typing import TypeVar
 
+from jacaros.agents.language.offers import OPERATOR, USER
 from jacaros.look.page.live.access import Access
-from jacaros.look.page.live.commands import (
-    Commands,
-    Text,
-    artifact_commands,
-    debug_commands,
-    world_commands,
-)
+from jacaros.look.page.live.agent_commands import FOR_OBSERVERS, FOR_OPERATORS, FOR_USERS
+from jacaros.look.page.live.commands import Commands, artifact_commands, debug_commands, world_commands
 from jacaros.look.page.live.live_view import LiveView
-from jacaros.look.page.live.mind_commands import mind_commands
 from jacaros.look.page.live.server import LiveServer, bound_socket
 from jacaros.look.page.watch import Watch, watch_of
 from jacaros.look.records import records
-from jacaros.look.records.records import FiniteNumber, Record
-from jacaros.look.why.story import story_of
-from jacaros.look.why.tales import StoryLine
-from jacaros.look.why.why import explain
 from jacaros.robots.world import World
-from jacaros.runtime.clock import outside_run, start_thread
+from jacaros.runtime.clock import outside_run
 from jacaros.runtime.mas.embedding.mas import Mas
 from jacaros.runtime.mas.system import System
-
-T = TypeVar("T")
+from jacaros.serving.callers import Caller
+from jacaros.serving.service import service_of
 
 FIRST_VISIT = 5.0
 """Seconds that the end of a run waits for an opened browser that has not shown the run yet."""
 
-REST = 4.0
-"""Seconds between two answers per second that the first one took."""
 SIGNALS = 128
 """Exit codes from here on mean that a signal ended the run, which must then not wait."""
 
@@ -48,6 +35,8 @@ class RunView:
         address: address of this machine; only this machine reaches the loopback address.
         port: port; 0 for a free one.
         token: token in the path; None for a random one.
+        role: what pages may do: an ``observer`` only looks, a ``user`` also gives goals that agents offer, and answers
+            their questions; an ``operator`` commands everything.
 
     Attributes:
         watcher: receives the run.
@@ -58,18 +47,21 @@ class RunView:
         UsageError: the address cannot be used, or the token is invalid.
     """
 
-    def __init__(self, system: System, address: str, port: int, token: str | None) -> None:
+    def __init__(
+        self, system: System, address: str, port: int, token: str | None, role: str = OPERATOR
+    ) -> None:
         self._system = system
         self.awaited = False
-        self.commands = Commands(self._note)
-        self.watcher = LiveView(system.deployment.name, self.commands)
+        self._caller = Caller(role, "page", frozenset({role}))
+        service = service_of(system)
+        self.commands = Commands(lambda what: service.note(self._caller, what))
+        open_session = lambda: service.open(self._caller)  # noqa: E731
+        self.watcher = LiveView(system.deployment.name, self.commands, open_session=open_session)
         access = Access(address, token)
         self._server = LiveServer(bound_socket(address, port), access, self.watcher)
         self.address = self._server.address
         self._open_address = self.address.removesuffix(f"{access.token}/")
         """Without the token, which other members of a fleet do not get."""
-        self._explaining = asyncio.Lock()
-        self._rested_at = 0.0
         self._serving: asyncio.Task[None] | None = None
         self._end_debug: Callable[[], None] = lambda: None
 
@@ -80,11 +72,16 @@ class RunView:
             watch: watch of the run, with `watcher` among its watchers.
         """
         system = self._system
-        self.commands.add({**mind_commands(system), **artifact_commands(system)}, changes=True)
-        self.commands.add({"why": self._why, "story": self._story})
-        # The world may be created later, when an agent first needs a robot.
-        system.ros.watch_world(lambda world: self._let_change(world, watch.look))
-        self._debug()
+        self.commands.add(FOR_OBSERVERS)
+        if self._caller.has((USER,)):
+            self.commands.add(FOR_USERS)
+        if self._caller.has((OPERATOR,)):
+            self.commands.add(FOR_OPERATORS)
+            self.commands.add(artifact_commands(system), changes=True)
+            self.commands.add(debug_commands(system.debugger))
+            # The world may be created later, when an agent first needs a robot.
+            system.ros.watch_world(lambda world: self._let_change(world, watch.look))
+        self._show_debugger()
         self._show_page(self._open_address)
         with outside_run():  # a paused run must be able to continue
             self._serving = asyncio.create_task(self._serve())
@@ -100,10 +97,8 @@ class RunView:
         self.commands.add(world_commands(self._system, world, look), changes=True)
         self.watcher.commands_changed()
 
-    def _debug(self) -> None:
-        """Add the debugger's commands, and show its state."""
+    def _show_debugger(self) -> None:
         debugger, history = self._system.debugger, self._system.history()
-        self.commands.add(debug_commands(debugger))
         history.record(records.DebugRecord(**debugger.state.data()))
         self._end_debug = debugger.listen(lambda state: history.record(records.DebugRecord(**state.data())))
 
@@ -128,37 +123,10 @@ class RunView:
             else:
                 await self._server.close()
 
-    async def _why(self, question: Text, at: FiniteNumber | None = None) -> str:
-        """Answer a question about the run so far, as lines."""
-        return await self._from_records(lambda records: explain(records, question, at).text())
-
-    async def _story(self) -> Sequence[StoryLine]:
-        """Tell the run so far."""
-        return await self._from_records(lambda records: story_of(records, is_over=False))
-
-    async def _from_records(self, answer: Callable[[Iterable[Record]], T]) -> T:
-        """Answer from the records of the run so far, in a thread, because many of them take seconds."""
-        async with self._explaining:
-            records = self._system.keep_history().all()
-            return await start_thread(lambda: self._after_a_rest(lambda: answer(records)))
-
-    def _after_a_rest(self, answer: Callable[[], T]) -> T:
-        """Answer in a thread, which first rests: answers take at most a fifth of the time, however many are wanted."""
-        time.sleep(max(0.0, self._rested_at - time.monotonic()))
-        begun = time.monotonic()
-        try:
-            return answer()
-        finally:
-            now = time.monotonic()
-            self._rested_at = now + REST * (now - begun)
-
-    def _note(self, what: str) -> None:
-        self._system.history().record(records.InterventionRecord(what))
-
 
 @asynccontextmanager
 async def view(
-    mas: Mas, *, address: str = "127.0.0.1", port: int = 0, token: str | None = None
+    mas: Mas, *, address: str = "127.0.0.1", port: int = 0, token: str | None = None, role: str = OPERATOR
 ) -> AsyncIterator[str]:
     """Serve live pages of a running system inside an ``async with``.
 
@@ -173,6 +141,7 @@ async def view(
         address: address of this machine; by default one that only this machine can reach.
         port: port; a free one by default.
         token: token in the path, at least 16 letters and digits; random by default.
+        role: what pages may do: ``observer``, ``user`` or ``operator``; see `RunView`.
 
     Returns:
         The address of the page.
@@ -181,7 +150,7 @@ async def view(
         UsageError: the address cannot be used, or the token is invalid.
         RunEnded: the system is not running.
     """
-    shown = RunView(mas.system, address, port, token)
+    shown = RunView(mas.system, address, port, token, role)
     watch = watch_of(mas.system, [shown.watcher], live=True)
     watch.start()
     end_prints = mas.on_print(watch.text)

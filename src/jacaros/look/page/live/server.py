@@ -219,7 +219,7 @@ class LiveServer:
         allowance = self._allowances.begin()
         sending = asyncio.create_task(self._send(connection, delivery))
         try:
-            await self._listen(connection, allowance)
+            await self._listen(connection, delivery, allowance)
         except ConnectionClosed:
             pass
         finally:
@@ -259,7 +259,7 @@ class LiveServer:
             sending.cancel()
         sending.result()
 
-    async def _listen(self, connection: ServerConnection, allowance: Allowance) -> None:
+    async def _listen(self, connection: ServerConnection, delivery: Delivery, allowance: Allowance) -> None:
         """Execute the commands of a page within its budget; commands that wait do not block later ones."""
         assert self._beat is not None
         garbage = count = 0
@@ -271,7 +271,7 @@ class LiveServer:
                 if garbage >= GARBAGE:
                     self._disconnect(connection)
                     return
-                work = metered(self._reply(connection, command), allowance.spend)
+                work = metered(self._reply(connection, delivery, command), allowance.spend)
                 task = asyncio.create_task(work)  # pyright: ignore[reportArgumentType] - a generator is one, too
                 running.add(task)
                 task.add_done_callback(running.discard)
@@ -287,10 +287,12 @@ class LiveServer:
             for task in running:
                 task.cancel()
 
-    async def _reply(self, connection: ServerConnection, command: Mapping[str, Any] | None) -> None:
+    async def _reply(
+        self, connection: ServerConnection, delivery: Delivery, command: Mapping[str, Any] | None
+    ) -> None:
         reply: Mapping[str, Any] = {"kind": "reply", "id": None, "ok": False, "error": "unreadable command"}
         if command is not None:
-            reply = await self._source.answer(command)
+            reply = await self._source.answer(delivery, command)
         with suppress(ConnectionClosed):
             await connection.send(json_text(reply))
 

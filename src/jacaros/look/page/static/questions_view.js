@@ -37,8 +37,7 @@ export class QuestionsView {
 
   card(key, { artifact, values: [number, text, options], t }) {
     const call = `ask("${text.replace(/[\\"]/g, "\\$&")}`.slice(0, CUT), asking = artifact.runningAt(t).find(({ operation }) => operation.startsWith(call));
-    const send = (control, answer, place) => this.context.actions.run(control, () =>
-      this.context.commands.send("answer", { artifact: artifact.path, question: number, text: answer, option: place }));
+    const send = (control, given) => this.context.actions.run(control, () => this.context.commands.send("answer", { question: `${artifact.path}-${number}`, given }));
     const answers = Array.isArray(options) && options.length ? this.choices(options.map(valueText), send) : this.field(send);
     const made = element("div", "asked card", element("p", "", element("b", "who", asking?.agent ?? artifact.name), ` asks: ${text} `,
       whyButton(this.context, { artifact: artifact.path, cause: asking?.id }, key)), answers);
@@ -49,7 +48,7 @@ export class QuestionsView {
 
   choices(options, send) {
     return element("div", "answers", ...options.map((option, index) => {
-      const made = button("plain", () => send(made, option, index + 1), option);
+      const made = button("plain", () => send(made, index + 1), option);
       return made;
     }));
   }
