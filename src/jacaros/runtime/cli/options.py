@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 import click
 from click.core import ParameterSource
 
+from jacaros.agents.language.offers import OBSERVER, OPERATOR, USER
 from jacaros.runtime.cli.outputs import LOOPBACK
 from jacaros.runtime.mas.options import RunOptions
 from jacaros.runtime.mas.ros_graph import NO_WORLD
@@ -158,8 +159,15 @@ view_options = with_options(
         click.Choice(["page", "terminal"]),
     ),
     place_options,
+    option(
+        "--view-role ROLE",
+        "What the page may do: an `observer` only looks; a `user` also gives goals that agents offer, and answers their "
+        "questions; an `operator` may do everything.",
+        click.Choice([OBSERVER, USER, OPERATOR]),
+        default=OPERATOR,
+    ),
 )
-"""Add the options ``--view`` and `place_options`; the command's class must be `ViewCommand`."""
+"""Add the options ``--view`` and ``--view-role``, and `place_options`; the command's class must be `ViewCommand`."""
 
 
 class ViewCommand(click.Command):

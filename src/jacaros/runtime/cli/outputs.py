@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
+from jacaros.agents.language.offers import OPERATOR
 from jacaros.runtime.cli.usage import usage_error
 
 OUTPUT_GONE = 141
@@ -36,7 +37,8 @@ class RequestedOutputs:
         replay: file for the replay page, or None.
         ground_truth: file for the ground truth of the world, or None.
         view: ``page`` (in the browser), ``terminal``, or None for no view.
-        view_address, view_port, view_token: where to serve the page; see `jacaros.look.page.live.run_view.RunView`.
+        view_address, view_port, view_token, view_role: where to serve the page, and what it may do; see
+            `jacaros.look.page.live.run_view.RunView`.
         record_limit: size limit of the recording, in megabytes.
     """
 
@@ -47,6 +49,7 @@ class RequestedOutputs:
     view_address: str = LOOPBACK
     view_port: int = 0
     view_token: str | None = None
+    view_role: str = OPERATOR
     record_limit: int = RECORD_LIMIT
 
     @classmethod

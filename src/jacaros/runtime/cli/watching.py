@@ -8,6 +8,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from jacaros.agents.language.offers import OBSERVER, OPERATOR, USER
 from jacaros.look.page.recorder import Recorder
 from jacaros.look.page.watch import Watch, Watcher, watch_of
 from jacaros.robots.world.process import GroundTruthFile
@@ -92,9 +93,9 @@ class Watching(ExitStack):
         """
         from jacaros.look.page.live.run_view import RunView  # here: it imports a server
 
-        address = self._outputs.view_address
-        view = RunView(mas, address, self._outputs.view_port, self._outputs.view_token)
-        log_address(view.address, address, self.log)
+        outputs = self._outputs
+        view = RunView(mas, outputs.view_address, outputs.view_port, outputs.view_token, outputs.view_role)
+        log_address(view.address, outputs.view_address, self.log, _MAY[outputs.view_role])
         view.awaited = open_page(view.address) is not None
         return view
 
@@ -121,19 +122,28 @@ class Watching(ExitStack):
         self.log(f"warning: {text}", "warning")
 
 
-def log_address(page: str, address: str, log: Callable[[str, str], object]) -> None:
+_MAY = {
+    OBSERVER: "",
+    USER: ", and can give its agents the goals that they offer",
+    OPERATOR: ", and can command its agents and robots",
+}
+"""What a page may do besides looking, by its role."""
+
+
+def log_address(page: str, address: str, log: Callable[[str, str], object], may: str = "") -> None:
     """Log the address of a page; warn if other machines can reach it.
 
     Args:
         page: URL of the page.
         address: IP address or name that the page is served at.
         log: takes a line and its level.
+        may: what the page may do besides looking.
     """
     log(f"view: {page}", "info")
     if address not in (LOOPBACK, "localhost", "::1"):
         log(
             f"warning: every machine that reaches {address} and knows the token can see everything in this run, including "
-            "the programs, and can command its agents and robots; the connection is not encrypted",
+            f"the programs{may}; the connection is not encrypted",
             "warning",
         )
 

@@ -61,6 +61,8 @@ def test_other_machines_need_a_token_and_their_rights_are_logged(
     assert "/a-token-that-tests-know/" in result.stderr
     assert "can command its agents and robots" in result.stderr
     assert "not encrypted" in result.stderr
+    result = run(str(program), "--view", "--view-address", "0.0.0.0", "--view-role", "observer")
+    assert "including the programs; the connection" in result.stderr
 
 
 def test_a_missing_websockets_library_is_reported_before_the_run(program: Path, monkeypatch):
