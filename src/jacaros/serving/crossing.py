@@ -35,7 +35,7 @@ class Crossing:
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self._loop = loop
-        self._requests: deque[Callable[[], None]] = deque()
+        self._requests: deque[Callable[[], object]] = deque()
         self._lock = threading.Lock()
         self._is_scheduled = False
 
@@ -46,7 +46,7 @@ class Crossing:
             RequestError: the run does not respond, or has ended. The function is then not called.
         """
         done: Future[T] = Future()
-        self._post(partial(_call, function, args, done))
+        self.post(partial(_call, function, args, done))
         try:
             async with asyncio.timeout(PATIENCE) as limit:
                 return await asyncio.wrap_future(done)
@@ -67,7 +67,7 @@ class Crossing:
             task.add_done_callback(partial(_pass_on, done))
             done.add_done_callback(lambda _: self._stop(task))
 
-        self._post(start)
+        self.post(start)
         return await asyncio.wrap_future(done)
 
     def _stop(self, task: "asyncio.Task[Any]") -> None:
@@ -75,7 +75,12 @@ class Crossing:
         if not task.done() and not self._loop.is_closed():
             self._loop.call_soon_threadsafe(task.cancel)
 
-    def _post(self, request: Callable[[], None]) -> None:
+    def post(self, request: Callable[[], object]) -> None:
+        """Execute a request on the loop of the run, without waiting for it.
+
+        Raises:
+            RequestError: the run has ended.
+        """
         with self._lock:
             self._requests.append(request)
             if self._is_scheduled:

@@ -206,10 +206,10 @@ class Session:
         self._service.sessions.pop(self, None)
 
     @contextmanager
-    def _request(self) -> Iterator[None]:
+    def _request(self, requests: float = 1.0) -> Iterator[None]:
         if self.closed:
             raise RequestError("ended", "the session, or the run, has ended")
-        self._allowance.spend()
+        self._allowance.spend(requests)
         with of_run():  # what it starts pauses with the run
             yield
 
@@ -302,8 +302,8 @@ class Session:
             return [g for g in all_goals if g.caller == self.caller or self.caller.has(("operator",))]
 
     def cancel(self, id: str) -> RequestedGoal:
-        """Cancel a goal: its intention is dropped, and cleaned up."""
-        with self._request():
+        """Cancel a goal: its intention is dropped, and cleaned up. Cancelling is not limited: robots must stop."""
+        with self._request(0.0):
             goal = self._goal(id)
             self._cancel(goal)
             return goal
