@@ -30,6 +30,7 @@ _LIBRARIES = ("click", "rich", "ruamel.yaml", "websockets", "numpy")
 COMMANDS = {
     "demo": ("jacaros.runtime.cli.run:demo", "Show a robot on patrol."),
     "run": ("jacaros.runtime.cli.run", "Run an agent program or a project."),
+    "mcp": ("jacaros.runtime.cli.mcp", "Run an agent program, and serve it to a language model."),
     "check": (
         "jacaros.runtime.cli.programs:check",
         "Report problems in programs, projects and mapping files.",

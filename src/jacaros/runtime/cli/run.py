@@ -156,6 +156,7 @@ def command(
     explained: tuple[str, ...],
     node: str | None,
     all_nodes: bool,
+    open_door: Callable[[System], None] | None = None,
     **given: Any,
 ) -> int:
     """Run FILE: an agent program (.asl, or .py for an agent in Python) or a project (.mas2j, .jcm).
@@ -213,6 +214,8 @@ def command(
         def open_doors(mas: System) -> None:
             service.begin(mas, console.log)
             _open_to_ros(mas, offer=offer, lifecycle=lifecycle)
+            if open_door is not None:
+                open_door(mas)
 
         code = _launch(project, options, console, outputs, explained, open_doors)
         return code

@@ -1,0 +1,163 @@
+"""MCP over the standard input and output of the process, which then belong to the client."""
+
+import asyncio
+import os
+import re
+import sys
+import threading
+from collections.abc import AsyncIterator, Callable
+from concurrent.futures import Future
+from contextlib import suppress
+from dataclasses import dataclass
+from queue import SimpleQueue
+from typing import Any, BinaryIO, cast
+
+from mcp.server.stdio import stdio_server
+
+from jacaros.runtime.mas.system import System
+from jacaros.serving.callers import Caller, RequestError
+from jacaros.serving.crossing import Crossing, DoorThread
+from jacaros.serving.mcp.clients import Client
+from jacaros.serving.mcp.server import Context, McpServer
+from jacaros.serving.service import service_of
+
+LONGEST_LINE = 1 << 20
+"""Maximum length of a message, in bytes; a longer one is skipped."""
+MOST_LINES = 100
+"""Number of messages that are read ahead."""
+
+
+@dataclass(frozen=True)
+class Wire:
+    """Descriptors of the client's messages and ours."""
+
+    source: int
+    sink: int
+
+
+def claim() -> Wire:
+    """Take over the standard input and output: from now on, output of the run goes to the standard error output."""
+    wire = Wire(os.dup(0), os.dup(1))
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nothing, 0)
+    os.close(nothing)
+    sys.stdout.flush()
+    os.dup2(2, 1)
+    return wire
+
+
+class Lines:
+    """Lines of the client, read in a daemon thread: an idle client does not keep the process alive.
+
+    Args:
+        file: where to read.
+        ended: called when the client has closed it.
+    """
+
+    def __init__(self, file: BinaryIO, ended: Callable[[], None]) -> None:
+        self._file, self._ended = file, ended
+        self._loop = asyncio.get_running_loop()
+        self._lines = asyncio.Queue[str | None](MOST_LINES)
+        threading.Thread(target=self._read, name="jacaros mcp input", daemon=True).start()
+
+    async def __aiter__(self) -> AsyncIterator[str]:
+        while (line := await self._lines.get()) is not None:
+            yield line
+        self._ended()
+
+    def _read(self) -> None:
+        with suppress(OSError, RuntimeError):  # the loop has ended
+            while line := self._file.readline(LONGEST_LINE):
+                rest = line
+                while not rest.endswith(b"\n") and (rest := self._file.readline(LONGEST_LINE)):
+                    line = b""  # it is too long
+                if line.strip():
+                    self._pass(line.decode("utf-8", "replace"))
+            self._pass(None)
+
+    def _pass(self, line: str | None) -> None:
+        asyncio.run_coroutine_threadsafe(self._lines.put(line), self._loop).result()
+
+
+class Writer:
+    """Messages to the client, written in a daemon thread: a client that does not read keeps nothing alive.
+
+    Args:
+        file: where to write.
+    """
+
+    def __init__(self, file: BinaryIO) -> None:
+        self._file = file
+        self._texts = SimpleQueue[tuple[str, Future[None]]]()
+        threading.Thread(target=self._write, name="jacaros mcp output", daemon=True).start()
+
+    async def write(self, text: str) -> None:
+        """Write a text."""
+        done: Future[None] = Future()
+        self._texts.put((text, done))
+        await asyncio.wrap_future(done)
+
+    async def flush(self) -> None:
+        """All has been written."""
+
+    def _write(self) -> None:
+        while True:
+            text, done = self._texts.get()
+            with suppress(OSError):  # the client is gone; its input will end, too
+                self._file.write(text.encode())
+                self._file.flush()
+            if done.set_running_or_notify_cancel():
+                done.set_result(None)
+
+
+class StdioDoor:
+    """Serves a run to the process that started this one. The run ends with its client.
+
+    Args:
+        system: the run; already started.
+        wire: what `claim` returned.
+        roles: roles of the client.
+        patience: see `McpServer`.
+    """
+
+    def __init__(self, system: System, wire: Wire, roles: frozenset[str], patience: float | None) -> None:
+        self._system, self._wire, self._roles, self._patience = system, wire, roles, patience
+        self._service = service_of(system)
+        self._client: Client | None = None
+        self._thread = DoorThread("jacaros mcp", self._serve, self._failed)
+        system.close_last(self._thread.close)
+
+    def _failed(self, error: Exception) -> None:
+        self._system.console.log(f"error: MCP server: {type(error).__name__}: {error}", "error")
+
+    async def _serve(self, crossing: Crossing) -> None:
+        def client_of(ctx: Context) -> Client:
+            if self._client is None:
+                self._client = Client(Caller(_name(ctx), "mcp", self._roles), crossing, self._service)
+            return self._client
+
+        server = McpServer(self._system.deployment.name, client_of, self._patience).server
+        lines = Lines(os.fdopen(self._wire.source, "rb", closefd=False), self._left)
+        writer = Writer(os.fdopen(self._wire.sink, "wb", closefd=False))
+        async with stdio_server(cast(Any, lines), cast(Any, writer)) as (read, write):
+            await server.run(read, write, server.create_initialization_options())
+        with suppress(RequestError):  # the run has ended
+            if self._client is not None:
+                await self._client.leave()
+                await crossing.wait(self._goals_ended)
+            await crossing.call(self._system.stop_system, 0.0, 0)
+
+    def _left(self) -> None:
+        if self._client is not None:
+            self._client.left = True
+
+    async def _goals_ended(self) -> None:
+        """Wait for the goals of the client that continue without it, and for the clean-up of the others."""
+        for goal in tuple(self._service.goals.values()):
+            await goal.wait()
+
+
+def _name(ctx: Context) -> str:
+    """Return the name by which a client introduces itself, such as ``claude-ai``."""
+    params = ctx.session.client_params
+    return re.sub(r"[^A-Za-z0-9._-]", "_", params.client_info.name)[:40] if params is not None else "client"

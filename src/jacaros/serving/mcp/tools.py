@@ -1,0 +1,166 @@
+"""What agents offer, as tools and resources of MCP."""
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+from urllib.parse import quote, unquote, urlsplit
+
+import mcp_types as types
+
+from jacaros.agents.language.offers import Offer, Parameter
+from jacaros.look.why.why import FORMS
+from jacaros.serving.arguments import schema_of
+
+LONGEST_NAME = 64
+"""Maximum length of a tool's name that all clients take."""
+_BUSY: Final = {
+    "refuse": "a further one is refused",
+    "wait": "a further one waits for its turn",
+    "replace": "a further one replaces the oldest",
+}
+_FORMS = "; ".join(f"`{form}`: {answer}" for form, answer in FORMS.items())
+_TEXT: Final = {"type": "string"}
+
+
+@dataclass(frozen=True, slots=True)
+class OfferedTool:
+    """An offer of an agent that is a tool.
+
+    Attributes:
+        agent: name of the agent.
+        offer: the goal, the question, or the belief that callers may tell.
+    """
+
+    agent: str
+    offer: Offer
+
+
+def _own(
+    name: str, doc: str, properties: Mapping[str, str], required: Sequence[str], read_only: bool
+) -> types.Tool:
+    schema = {
+        "type": "object",
+        "properties": {key: {**_TEXT, "description": about} for key, about in properties.items()},
+        "required": list(required),
+        "additionalProperties": False,
+    }
+    hints = types.ToolAnnotations(read_only_hint=read_only, destructive_hint=False, idempotent_hint=True)
+    return types.Tool(name=name, description=doc, input_schema=schema, annotations=hints)
+
+
+OWN_TOOLS: Final = (
+    _own("goals", "List the goals that you gave, with their states and ids, the newest last.", {}, (), True),
+    _own(
+        "cancel_goal",
+        "Stop a goal: the agent drops it and cleans up, so a robot that moves for it stops.",
+        {"id": "id of the goal, from `goals`; all goals that you gave if you leave it out"},
+        (),
+        False,
+    ),
+    _own(
+        "why",
+        f"Explain what happened in the run, and why. Questions: {_FORMS}.",
+        {"question": "such as `why did the robot stop`"},
+        ("question",),
+        True,
+    ),
+    _own(
+        "why_not",
+        "Explain why something did not happen.",
+        {"what": "such as `go to the dock`, `!deliver(_, kitchen)` or `plan @label`"},
+        ("what",),
+        True,
+    ),
+)
+"""Tools that all runs have."""
+_OWN_NAMES: Final = frozenset(each.name for each in OWN_TOOLS)
+
+
+def named_tools(offered: Iterable[tuple[str, Offer]]) -> dict[str, OfferedTool]:
+    """Return the offers of agents that are tools, by the names of the tools."""
+    tools: dict[str, OfferedTool] = {}
+    for agent, offer in offered:
+        if offer.what not in ("goal", "question", "tell"):
+            continue
+        verb = "tell_" * (offer.what == "tell")
+        wanted = re.sub(r"[^A-Za-z0-9_-]", "_", f"{agent}_{verb}{offer.name}")[:LONGEST_NAME]
+        name, number = wanted, 1
+        while name in tools or name in _OWN_NAMES:
+            number += 1
+            name = f"{wanted[: LONGEST_NAME - 4]}_{number}"
+        tools[name] = OfferedTool(agent, offer)
+    return tools
+
+
+def tool_of(name: str, tool: OfferedTool) -> types.Tool:
+    """Return the description of a tool for clients."""
+    offer = tool.offer
+    results = [each for each in offer.parameters if each.output]
+    schema: dict[str, Any] | None = None
+    if offer.what == "question":
+        rows = {"type": "array", "items": _open_schema(results)}
+        schema = {"type": "object", "properties": {"answers": rows}, "required": ["answers"]}
+    elif results:
+        schema = _open_schema(results)
+    return types.Tool(
+        name=name,
+        title=f"{tool.agent}: {offer.name}",
+        description=_description(tool),
+        input_schema=schema_of(offer.inputs),
+        output_schema=schema,
+        annotations=types.ToolAnnotations(
+            read_only_hint=offer.what == "question",
+            destructive_hint="destructive" in offer.hints,
+            idempotent_hint=offer.what != "goal" or "idempotent" in offer.hints,
+        ),
+    )
+
+
+def _open_schema(results: Sequence[Parameter]) -> dict[str, Any]:
+    """Return the schema of results, of which a program may leave some out."""
+    return schema_of(results) | {"required": []}
+
+
+def _description(tool: OfferedTool) -> str:
+    offer = tool.offer
+    told = offer.doc or f"{offer.what} {offer}"
+    if offer.what == "tell":
+        return f"Tell the agent {tool.agent} a belief. {told}"
+    if offer.what == "question":
+        return f"Ask the agent {tool.agent}. {told}"
+    many = "" if offer.at_most is None else f" At most {offer.at_most} at once; {_BUSY[offer.when_busy]}."
+    return f"Give the agent {tool.agent} a goal. {told}{many}"
+
+
+def uri_of(agent: str, name: str) -> str:
+    """Return the address of an offered belief."""
+    return f"jacaros://{quote(agent, '')}/beliefs/{quote(name, '')}"
+
+
+def belief_at(uri: str) -> tuple[str, str] | None:
+    """Return agent and name of the belief at an address; None for another address."""
+    try:
+        parts = urlsplit(uri)
+    except ValueError:
+        return None
+    folder, _, name = parts.path[1:].partition("/")
+    if parts.scheme != "jacaros" or folder != "beliefs" or not name:
+        return None
+    return unquote(parts.netloc), unquote(name)
+
+
+def resources_of(offered: Iterable[tuple[str, Offer]]) -> list[types.Resource]:
+    """Return the offered beliefs as resources."""
+    found = {
+        uri_of(agent, offer.name): types.Resource(
+            name=f"{agent}_{offer.name}",
+            title=f"{agent}: {offer}",
+            uri=uri_of(agent, offer.name),
+            description=offer.doc or f"Beliefs {offer} of the agent {agent}.",
+            mime_type="application/json",
+        )
+        for agent, offer in offered
+        if offer.what == "belief"
+    }
+    return list(found.values())
