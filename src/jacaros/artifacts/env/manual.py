@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from jacaros.artifacts.env.artifact import Artifact
+from jacaros.artifacts.env.class_sources import ClassSources
 from jacaros.artifacts.env.operation import LINK, OPERATION
 from jacaros.artifacts.kernel.declaration import DeclaredOperation, Signature
 
@@ -39,25 +40,21 @@ def written_signals(artifact_type: type) -> Usages:
     return _written(artifact_type, ("signal", "signal_to"))
 
 
-def usages_in(kind: type) -> Iterator[tuple[str, str]]:
+def usages_in(kind: type, sources: ClassSources) -> Iterator[tuple[str, str]]:
     """Yield name and usage of each property and signal where the code of one class defines, updates or sends it."""
-    return _calls(kind, tuple(_DEFINES))
+    return _calls(sources.of(kind), tuple(_DEFINES))
 
 
 def _written(artifact_type: type, methods: tuple[str, ...]) -> Usages:
-    found: Usages = {}
+    found, sources = Usages(), ClassSources()
     for each in reversed(own_classes(artifact_type)):
-        for name, usage in _calls(each, methods):
+        for name, usage in _calls(sources.of(each), methods):
             found.setdefault(name, usage)
     return found
 
 
-def _calls(kind: type, methods: tuple[str, ...]) -> Iterator[tuple[str, str]]:
-    try:
-        tree = ast.parse(textwrap.dedent(inspect.getsource(kind)))
-    except (OSError, TypeError, SyntaxError):  # created at run time: no source
-        return
-    for node in _in_order(tree):
+def _calls(code: ast.ClassDef | None, methods: tuple[str, ...]) -> Iterator[tuple[str, str]]:
+    for node in _in_order(code) if code is not None else ():
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in methods:
             place = _DEFINES[node.func.attr]
             name = node.args[place] if len(node.args) > place else None

@@ -5,7 +5,6 @@ Only certain errors are reported: a program may create artifacts of types comput
 operations at run time, and an agent architecture may run actions itself.
 """
 
-import inspect
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence, Set
@@ -29,6 +28,7 @@ from jacaros.artifacts.env.errors import UnknownArtifactType
 from jacaros.runtime.clock import VirtualClock
 from jacaros.runtime.files.texts import close_matches, did_you_mean
 from jacaros.runtime.mas.checks.arguments import unbound_arguments
+from jacaros.runtime.mas.checks.observables import Observables
 from jacaros.runtime.mas.deployment import AgentSpec, Deployment
 
 if TYPE_CHECKING:
@@ -42,18 +42,13 @@ _OPEN_WORLD: Final = frozenset({"linkRemoteWorkspace", "linkWorkspace", "linkWor
 _FAKE: Final = "fake_action"
 """The goal by which a test simulates the environment."""
 
-_CLOSED: Final = ("jacaros.artifacts.", "jacaros.robots.")
-"""Modules whose artifacts have only the operations that their classes declare."""
-
-_OPEN_METHODS: Final = ("define_operation", "make_artifact", "create(")
-"""Methods that add operations at run time."""
-
 
 def check_artifacts(
     programs: Sequence[tuple[AgentSpec, nodes.Program]],
     folders: Sequence[Path],
     find_type: "FindType",
     types: "Sequence[type[Artifact]] | None",
+    observables: Observables,
 ) -> list[Diagnostic]:
     """Return warnings about what agents do with the artifacts of a project.
 
@@ -62,11 +57,12 @@ def check_artifacts(
         folders: folders of the project, with its mapping files.
         find_type: finds the artifact classes of the project.
         types: the types of all its artifacts; None if they are not known.
+        observables: reads the code of artifact types.
     """
     named = [each for _, program in programs for each in _named_types(program)[0] if each.of_library]
     found = list(_unknown_types(named, folders, find_type))
     if types is not None:
-        found += [*_unknown_operations(programs, types), *_unknown_resources(programs, types)]
+        found += [*_unknown_operations(programs, types, observables), *_unknown_resources(programs, types)]
     return found
 
 
@@ -74,9 +70,11 @@ def check_artifacts(
 
 
 def _unknown_operations(
-    programs: Sequence[tuple[AgentSpec, nodes.Program]], types: "Sequence[type[Artifact]]"
+    programs: Sequence[tuple[AgentSpec, nodes.Program]],
+    types: "Sequence[type[Artifact]]",
+    observables: Observables,
 ) -> Iterator[Diagnostic]:
-    if any(_is_open(program) for _, program in programs) or any(map(_offers_more, types)):
+    if any(_is_open(program) for _, program in programs) or any(map(observables.may_add, types)):
         return
     offered = Offered(types)
     yield from bypassed_plans([program for _, program in programs])
@@ -115,20 +113,6 @@ def _is_open(program: nodes.Program) -> bool:
     return any(
         STANDARD.get(call.name, UNDECLARED).brings_in for call in found.of(nodes.InternalAction)
     ) or any(literal.functor == _FAKE for literal in found.of(nodes.Literal))
-
-
-def _offers_more(artifact_type: "type[Artifact]") -> bool:
-    """Return whether artifacts of a type may define operations, or create other artifacts, at run time."""
-    for each in artifact_type.__mro__:
-        if each.__module__.startswith(_CLOSED) or each is object:
-            continue
-        try:
-            source = inspect.getsource(each)
-        except (OSError, TypeError):
-            return True
-        if any(method in source for method in _OPEN_METHODS):
-            return True
-    return False
 
 
 class Offered:
@@ -172,9 +156,11 @@ class Offered:
         return did_you_mean(same or close_matches(name, [each.partition("/")[0] for each in known])) or None
 
 
-def lacks_actions(programs: Sequence[nodes.Program], types: "Sequence[type[Artifact]] | None") -> bool:
+def lacks_actions(
+    programs: Sequence[nodes.Program], types: "Sequence[type[Artifact]] | None", observables: Observables
+) -> bool:
     """Return whether actions of programs may belong to artifacts other than of these types."""
-    if types is None or any(map(_is_open, programs)) or any(map(_offers_more, types)):
+    if types is None or any(map(_is_open, programs)) or any(map(observables.may_add, types)):
         return True
     offered = Offered(types)
     actions = (step.action for each in programs for step in each.found.of(nodes.ExternalAction))

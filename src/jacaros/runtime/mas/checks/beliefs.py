@@ -129,7 +129,7 @@ class _BeliefCheck:
             self._knows_artifacts
             and not around.is_partial
             and not any(each.tells_unseen for each in flows)
-            and not lacks_actions(programs, types)
+            and not lacks_actions(programs, types, around.observables)
         )
         self._units = parameter_units(types) if self._is_closed else {}
         self._misspelt = _misspelt_adders(flows, self._flow.observables)

@@ -360,7 +360,7 @@ class _Checked:
         types = self._made_types if is_known else made_types(self.deployment, (), find_type)
         if is_known:
             self._findings.diagnostics[:] = map(operations_as_goals(types or ()), self._findings.diagnostics)
-        found = check_artifacts(programs, self._folders, find_type, types)
+        found = check_artifacts(programs, self._folders, find_type, types, self._findings.observables)
         if types is None or not is_known:
             known = KnownActions(STANDARD)
             return [*found, *(each for _, program in self.programs for each in missing_marks(program, known))]

@@ -7,7 +7,6 @@ Value(kind='number', options=(), unit='percent', whole=True)
 ('free', 'front')
 """
 
-import inspect
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache
@@ -15,11 +14,16 @@ from itertools import chain
 from typing import TYPE_CHECKING, Final
 
 from jacaros.agents.checks.flow import UNKNOWN, Adder, Value
+from jacaros.artifacts.env.class_sources import ClassSources
 from jacaros.artifacts.env.manual import described_usages, own_classes, usages_in
 
 if TYPE_CHECKING:
     from jacaros.artifacts.env.artifact import Artifact
 
+_OPENS: Final = re.compile(r"define_operation|make_artifact|create\(")
+"""Code that adds operations at run time."""
+_CLOSED: Final = ("jacaros.artifacts.", "jacaros.robots.")
+"""Modules whose artifacts have only the operations that their classes declare."""
 _NAMES_ITSELF: Final = re.compile(r"\b(?:define_property|signal)\(\s*[^\s\"')]")
 """Code that computes a name."""
 _NUMBER: Final = re.compile(
@@ -34,9 +38,9 @@ class Observables:
     """The properties and signals of artifacts. The source of each class is read once: that is slow."""
 
     def __init__(self) -> None:
-        self._computes_names = cache(_computes_names)
+        self._sources = ClassSources()
         self._described: Callable[[type], list[tuple[str, Adder]]] = cache(_described)
-        self._written = cache(_written)
+        self._written: Callable[[type], list[tuple[str, Adder]]] = cache(self._in_code)
 
     def of(self, types: "Iterable[type[Artifact]]") -> dict[str, list[Adder]] | None:
         """Return the properties and signals of artifacts, by name; None if code computes their names."""
@@ -57,6 +61,19 @@ class Observables:
                 if (name, written.size) not in sizes:  # the description says more
                     found.setdefault(name, []).append(written)
         return found
+
+    def _in_code(self, kind: type) -> list[tuple[str, Adder]]:
+        return [(name, _adder("property", usage, "")) for name, usage in usages_in(kind, self._sources)]
+
+    def _computes_names(self, kind: type) -> bool:
+        """Return whether the code of a class computes names of properties. Built-in classes declare all of theirs."""
+        is_built_in = kind.__module__.startswith("jacaros.")
+        return not is_built_in and self._sources.mentions(kind, _NAMES_ITSELF) is not False
+
+    def may_add(self, artifact_type: type) -> bool:
+        """Return whether artifacts of a type may define operations, or create other artifacts, at run time."""
+        kinds = [each for each in artifact_type.__mro__ if not each.__module__.startswith(_CLOSED)]
+        return any(self._sources.mentions(each, _OPENS) is not False for each in kinds if each is not object)
 
 
 def parameter_units(types: "Iterable[type[Artifact]]") -> dict[tuple[str, int], Sequence[str]]:
@@ -80,10 +97,6 @@ def _described(artifact_type: type) -> list[tuple[str, Adder]]:
         for how, section in (("property", "Properties"), ("signal", "Signals"))
         for usage, text in described_usages(artifact_type, section)
     ]
-
-
-def _written(kind: type) -> list[tuple[str, Adder]]:
-    return [(name, _adder("property", usage, "")) for name, usage in usages_in(kind)]
 
 
 def _adder(how: str, usage: str, text: str) -> Adder:
@@ -123,13 +136,3 @@ def value_of_words(words: str) -> Value:
     kinds = {"text": "string", "atom": "atom", "list": "list"}
     kind = kinds.get("list" if words.startswith("list of ") else words, "")
     return Value(kind) if kind else UNKNOWN
-
-
-def _computes_names(artifact_class: type) -> bool:
-    """Return whether the code of a class computes names of properties. Built-in classes declare all of theirs."""
-    if artifact_class.__module__.startswith("jacaros."):
-        return False
-    try:
-        return _NAMES_ITSELF.search(inspect.getsource(artifact_class)) is not None
-    except (OSError, TypeError):
-        return True

@@ -1,0 +1,54 @@
+"""The code of classes, read from their files.
+
+>>> sources = ClassSources()
+>>> [node.name for node in sources.of(ClassSources).body if hasattr(node, "name")]
+['__init__', 'of', 'mentions']
+>>> sources.mentions(ClassSources, re.compile("getsourcefile")), sources.mentions(type, re.compile("x")) is None
+(True, True)
+"""
+
+import ast
+import inspect
+import re
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+
+class ClassSources:
+    """Reads the code of classes, and each file once: `inspect.getsource` reads the whole file for each class."""
+
+    def __init__(self) -> None:
+        self._of_file = cache(_of_file)
+
+    def of(self, kind: type) -> ast.ClassDef | None:
+        """Return the code of a class; None if there is none, because the class was made at run time."""
+        try:
+            file = inspect.getsourcefile(kind)
+        except (OSError, TypeError):
+            return None
+        return self._of_file(file).get(kind.__qualname__) if file else None
+
+    def mentions(self, kind: type, pattern: re.Pattern[str]) -> bool | None:
+        """Return whether a pattern is in the code of a class; None if its code is not known."""
+        code = self.of(kind)
+        return None if code is None else pattern.search(ast.unparse(code)) is not None
+
+
+def _of_file(file: str) -> dict[str, ast.ClassDef]:
+    try:
+        tree = ast.parse(Path(file).read_bytes())
+    except (OSError, SyntaxError, ValueError):
+        return {}
+    return dict(reversed(list(_classes(tree))))  # of several with the same name, the first one
+
+
+def _classes(node: ast.AST, outer: str = "") -> Iterator[tuple[str, ast.ClassDef]]:
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.ClassDef):
+            yield outer + child.name, child
+            yield from _classes(child, f"{outer}{child.name}.")
+        elif isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef):
+            yield from _classes(child, f"{outer}{child.name}.<locals>.")
+        elif not isinstance(child, ast.expr):
+            yield from _classes(child, outer)
