@@ -407,27 +407,6 @@ class Session:
             self._service.note(self.caller, f"answers question {id[:80]}: {str(given)[:200]}")
             await artifacts.answer(self._service.system.environment, id, given, self.caller.door)
 
-    # ---- artifacts, and questions of agents to a person
-
-    def artifacts(self) -> list[dict[str, str]]:
-        """Return names, paths and types of all artifacts, to an operator."""
-        with self._request():
-            self.caller.require(OPERATOR)
-            return artifacts.artifacts(self._service.system.environment)
-
-    def questions(self) -> list[dict[str, Any]]:
-        """Return the open questions of agents to a person."""
-        with self._request():
-            self.caller.require(OBSERVER)
-            return artifacts.questions(self._service.system.environment)
-
-    async def answer(self, id: str, given: str | int) -> None:
-        """Answer a question to a person with a text, or with the number of an option."""
-        with self._request():
-            self.caller.require(USER)
-            self._service.note(self.caller, f"answers question {id[:80]}: {str(given)[:200]}")
-            await artifacts.answer(self._service.system.environment, id, given, str(self.caller))
-
     # ---- events and explanations
 
     def listen(self, listener: OnEvent) -> Callable[[], None]:
