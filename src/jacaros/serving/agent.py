@@ -104,7 +104,9 @@ class OfferingAgent:
             self._queue.append((goal, cause))
             goal.queue()
         else:
-            goal.refuse(atom("busy"), f"{self.name} already pursues {len(busy)} of these goals")
+            goal.refuse(
+                atom("busy"), f"{self.name} is busy with {len(busy)} of these goals, as many as it takes"
+            )
 
     def ended(self, goal: RequestedGoal) -> None:
         """A goal has ended: the next one that waits has its turn."""
