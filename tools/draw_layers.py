@@ -15,6 +15,7 @@ COLOURS = {
     "artifacts": "#d5efd6",
     "robots": "#fbe3c3",
     "runtime": "#e3e3e8",
+    "serving": "#f6d9d6",
     "look": "#efdcf3",
     "fleet": "#efdcf3",
     "testing": "#efdcf3",

@@ -8,7 +8,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "src" / "jacaros"
 PAGE = (ROOT / "docs" / "explanation" / "architecture.md").read_text(encoding="utf-8")
-PATH = re.compile(r"`((?:agents|artifacts|robots|runtime|look|fleet|testing|tests)(?:/[\w.]+)+)`")
+PATH = re.compile(r"`((?:agents|artifacts|robots|runtime|serving|look|fleet|testing|tests)(?:/[\w.]+)+)`")
 
 
 def test_the_picture_shows_the_layers_that_the_contracts_allow(tmp_path: Path) -> None:
@@ -20,7 +20,7 @@ def test_the_picture_shows_the_layers_that_the_contracts_allow(tmp_path: Path) -
 
 def test_the_page_names_each_package_of_the_tree() -> None:
     packages = {file.parent.name for file in SOURCE.glob("*/__init__.py")}
-    assert packages == {"agents", "artifacts", "robots", "runtime", "look", "fleet", "testing"}
+    assert packages == {"agents", "artifacts", "robots", "runtime", "serving", "look", "fleet", "testing"}
     for package in packages:
         row = next(line for line in PAGE.splitlines() if line.startswith("|") and f"`{package}`" in line)
         named = set(re.findall(r"`(\w+)`", row))

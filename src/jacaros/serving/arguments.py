@@ -97,7 +97,7 @@ def term_of(value: Data, parameter: Parameter) -> Term:
             raise ValueError(f"has more than {MOST} characters")
         term: Term = String(value) if kind == "string" else to_term(Atom(value), UNKEPT)
     elif kind in ("number", "integer") and isinstance(value, int | float) and not isinstance(value, bool):
-        if not isfinite(value):
+        if not _is_finite(value):
             raise ValueError("must be finite")
         term = to_term(value, UNKEPT)
     elif kind == "boolean" and isinstance(value, bool):
@@ -150,11 +150,18 @@ def _plain(value: Data, count: list[int], depth: int = 0) -> Any:
         return [_plain(each, count, depth + 1) for each in value]
     if isinstance(value, dict):
         return _compound(value, count, depth)
-    if isinstance(value, float) and not isfinite(value):
+    if isinstance(value, int | float) and not _is_finite(value):
         raise ValueError("must be finite")
     if value is None:
         raise ValueError("must not be null")
     return value
+
+
+def _is_finite(value: float) -> bool:
+    try:
+        return isfinite(value)
+    except OverflowError:  # an integer that no float can represent
+        return False
 
 
 def _compound(value: dict[str, Data], count: list[int], depth: int) -> Any:
@@ -214,6 +221,8 @@ def data_of(term: Term) -> Data:
 
 
 def _data(value: Any) -> Data:
+    if isinstance(value, float) and not isfinite(value):
+        return str(value)  # JSON has no such numbers
     if isinstance(value, bool | int | float) or value is None:
         return value
     if isinstance(value, str):

@@ -157,11 +157,13 @@ def test_an_internal_error_prints_a_traceback_and_the_command(folder: Path, outc
 NOT_FOR_A_LONE_PROGRAM = (
     # other people's: robots, worlds, pictures
     *("msgspec", "numpy", "rosbags", "rich", "ruamel", "rclpy", "rospy", "yaml"),
+    *("starlette", "uvicorn", "anyio", "h11"),
     # Python's own that are slow to load
     *("argparse", "decimal", "difflib", "http.server", "importlib.metadata", "importlib.resources"),
     *("multiprocessing", "sqlite3", "tempfile", "unittest", "xml", "zipfile"),
     # ours: what other commands, projects and robots need
     *("jacaros.agents.language.formatting", "jacaros.agents.body", "jacaros.agents.python", "jacaros.look"),
+    "jacaros.serving",
     *(f"jacaros.runtime.mas.{name}" for name in ("checks.files", "project.jcm", "project.mas2j")),
     *("jacaros.runtime.mas.project.reading", "jacaros.runtime.mas.environment", "jacaros.testing"),
     *("jacaros.robots.world", "jacaros.artifacts", "jacaros.robots.streams"),
