@@ -3,6 +3,7 @@
 import asyncio
 import os
 import socket
+import ssl
 from collections.abc import Callable, Mapping
 from contextlib import AbstractAsyncContextManager, AsyncExitStack
 from dataclasses import dataclass
@@ -12,6 +13,7 @@ from pathlib import Path
 import uvicorn
 from starlette.types import ASGIApp
 
+from jacaros.runtime.errors import UsageError
 from jacaros.runtime.mas.system import System
 from jacaros.serving import running
 from jacaros.serving.access import LOOPBACK, Hosts, listening_socket
@@ -62,7 +64,7 @@ class HttpDoor:
         token: a random token of an operator.
 
     Raises:
-        UsageError: the address cannot be used.
+        UsageError: the address or the certificate cannot be used.
     """
 
     def __init__(
@@ -77,6 +79,7 @@ class HttpDoor:
         self.token = self._tokens.new("operator")
         self._service = service_of(system)
         help = "choose another address: --serve [ADDRESS:]PORT"
+        _check_certificate(address)
         self._socket = listening_socket("HTTP", address.host, address.port, help, MOST_CONNECTIONS)
         self.url = _url(self._socket, address.certificate is not None)
         certificate = "" if address.certificate is None else str(address.certificate.resolve())
@@ -134,6 +137,18 @@ class HttpDoor:
             ssl_keyfile=self._address.key,
             h11_max_incomplete_event_size=LARGEST_HEADER,
         )
+
+
+def _check_certificate(address: Address) -> None:
+    if address.certificate is None:
+        return
+    try:
+        ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER).load_cert_chain(address.certificate, address.key)
+    except OSError as error:  # ssl.SSLError is one
+        raise UsageError(
+            f"error: cannot use the certificate {address.certificate} with the key {address.key}: "
+            f"{error.strerror or error}\n  = help: both must be PEM files, and belong together"
+        ) from None
 
 
 def _url(listening: socket.socket, tls: bool) -> str:

@@ -40,7 +40,6 @@ CALLERS = {
 }
 
 
-
 def token(name: str) -> str:
     """Return the token of a caller."""
     return f"{name}-0123456789abcdef"
