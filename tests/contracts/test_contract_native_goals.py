@@ -21,7 +21,7 @@ PROGRAM = """
 { offer(goal, guard, when_left(cancel)) }
 +!deliver(_, office) <- .refuse(closed(office)).
 +!deliver(_, R) <- !drive(R); .progress(0.5, "half"); .wait(300).
-+!drive(_) <- .wait(300).
++!drive(_) <- .wait(2000).
 @g[cleanup(tidy)] +!guard <- .print("guarding"); .wait(100000).
 +!tidy <- .print("tidied").
 """
@@ -102,6 +102,15 @@ def test_a_native_client_hears_why_a_goal_is_refused(graph: Any, agents: Agents)
 def test_a_native_client_cancels(graph: Any, agents: Agents) -> None:
     told = heard(client(graph, f"/{agents.agent}/achieve", "guard", "--cancel"))
     assert (told[-1]["status"], told[-1]["state"]) == (5, "cancelled")
+    agents.wait_for("tidied")
+
+
+def test_a_goal_whose_only_client_is_killed_is_cancelled(graph: Any, agents: Agents) -> None:
+    """Its offer says so. Fast DDS notices after twenty seconds that a process was killed."""
+    process = client(graph, f"/{agents.agent}/guard", "")
+    agents.wait_for("guarding")
+    process.kill()
+    process.communicate()
     agents.wait_for("tidied")
 
 

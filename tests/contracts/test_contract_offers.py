@@ -158,6 +158,25 @@ def test_a_closed_door_ends_the_goals_of_its_clients(graph, left, right, bob):
     assert left.outcome(action, timeout=60)["status"] == "aborted"
 
 
+@pytest.mark.only("memory", "ros1", "ros2")
+@pytest.mark.parametrize("left_how", ["close", "kill"])
+def test_a_goal_whose_only_client_has_left_is_cancelled(graph, left, right, own_name, left_how):
+    name = f"{own_name[5:]}_{left_how}"
+    program = "{ offer(goal, guard, when_left(cancel)) } +!guard <- .print(begun); .wait(100000). "
+    right.offer(
+        name, program + "^!guard[state(dropped)] <- .print(NAME, dropped).".replace("NAME", f'"{name}"')
+    )
+    client, action = graph.peer(f"leaving_{left_how}"), f"/{name}/guard"
+    graph.wait_until(lambda: client.action_ready(action, ACHIEVE), "the action is found")
+    client.send_goal(action, action, {}, timeout=60, type_name=ACHIEVE)
+    graph.wait_until(lambda: client.told(action), "the goal is under way")
+    if left_how == "kill":
+        graph.kill(client)
+    else:
+        client.close_action_client(action, ACHIEVE)
+    graph.wait_until(lambda: f"{name}dropped" in right.printed(), "the goal is dropped")
+
+
 MAPPED = """
 offers:
   go:

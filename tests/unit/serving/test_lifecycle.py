@@ -14,7 +14,9 @@ from jacaros.serving.ros.opening import open_door
 ROBOT = Path(__file__).parents[3] / "examples" / "01_out_and_back" / "out_and_back.jcm"
 COUNTER = """
 { offer(goal, count(n(number), m(out(number)))) }
-n(0). !run. +!run <- -n(N); +n(N+1); .wait(100); !run. +!count(N, N+1).
+n(0). !run.
++!run <- -n(N); +n(N+1); .wait(100); !run.
++!count(N, N+1).
 """
 MESSAGES = "lifecycle_msgs/srv/"
 

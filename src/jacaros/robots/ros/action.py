@@ -154,6 +154,10 @@ class ActionServer(Protocol):
     def name(self) -> str:
         """Absolute name of the action."""
 
+    @property
+    def abandoned(self) -> bool:
+        """Whether no client is left, as far as the middleware shows: False over a bridge."""
+
     def close(self) -> None:
         """Stop offering the action; active goals are aborted with the text ``the server was closed``."""
 

@@ -290,6 +290,11 @@ class ActionClient:
         self._closed = False
 
     @property
+    def closed(self) -> bool:
+        """Whether it was closed, or its process has ended."""
+        return self._closed
+
+    @property
     def ready(self) -> bool:
         """Whether a server offers the action, as far as is known."""
         return not self._closed and self.wire.offered

@@ -252,6 +252,11 @@ class ActionlibServer:
         self._timer: Timer | None = None
         self._tell_regularly()
 
+    @property
+    def abandoned(self) -> bool:
+        """Whether no node listens to the feedback."""
+        return self._feedback.subscription_count == 0
+
     def close(self) -> None:
         """Stop offering the action; active goals are aborted."""
         if self._closed:

@@ -108,7 +108,7 @@ class RosDoor:
 
     def _happened(self, event: Event) -> None:
         if event["event"] == "goal":
-            self._pursuits.changed(event["id"])
+            self._pursuits.changed(event["id"], self._system.clock.now())
         elif event["event"] == "agent_started":
             self._agent_came(event["agent"])
         elif event["event"] == "agent_ended" and event["agent"] in self._agents:
@@ -128,20 +128,24 @@ class RosDoor:
 
         async def execute(served: ServerGoal) -> Fields | None:
             with of_run():
-                return await self._pursue(served, form)
+                self._look_later()
+                session = self.session(caller_of(served.goal_id))
+                return await self._pursuits.pursue(served, session, form, lambda: server.abandoned)
 
         policy = ActionPolicy(accept=lambda _: None if self.active else "the agents are not active")
-        return self._backend.action_server(topic, form.type_name, execute, policy).close
+        server = self._backend.action_server(topic, form.type_name, execute, policy)
+        return server.close
 
-    async def _pursue(self, served: ServerGoal, form: GoalForm) -> Fields | None:
+    def _look_later(self) -> None:
         if self._looking is None:
             self._looking = self._system.clock.call_later(LOOKING, self._look)
-        return await self._pursuits.pursue(served, self.session(caller_of(served.goal_id)), form)
 
     def _look(self) -> None:
-        self._pursuits.look(LOOKED_AT)
-        again = bool(self._pursuits)
-        self._looking = self._system.clock.call_later(LOOKING, self._look) if again else None
+        self._looking = None
+        with of_run():
+            self._pursuits.look(LOOKED_AT, self._system.clock.now())
+        if self._pursuits:
+            self._look_later()
 
     def mapped(self, agent: str, codec: OfferCodec) -> GoalForm:
         """Return the form of goals in the messages that a mapping file names."""

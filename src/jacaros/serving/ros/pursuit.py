@@ -1,6 +1,7 @@
 """Goals that come as actions of ROS."""
 
 import asyncio
+from collections.abc import Callable
 
 from jacaros.robots.ros.action import Abort, ServerGoal
 from jacaros.robots.ros.errors import MessageMismatch
@@ -8,6 +9,11 @@ from jacaros.serving.callers import RequestError
 from jacaros.serving.goals import ACHIEVED, PENDING, WAITING, RequestedGoal
 from jacaros.serving.ros.forms import MISMATCH, Fields, GoalForm
 from jacaros.serving.service import Session
+
+REPEATING = 1.0
+"""Seconds after which unchanged feedback is sent again."""
+LEFT_AFTER = 3.0
+"""Seconds without any client of an action after which its goals are cancelled whose offers say ``when_left(cancel)``."""
 
 
 class Pursuit:
@@ -17,21 +23,37 @@ class Pursuit:
         served: the goal of the graph.
         goal: the goal of the agent.
         form: writes the feedback.
+        abandoned: returns whether the action has no client left.
     """
 
-    def __init__(self, served: ServerGoal, goal: RequestedGoal, form: GoalForm) -> None:
-        self._served, self.goal, self._form = served, goal, form
+    def __init__(
+        self, served: ServerGoal, goal: RequestedGoal, form: GoalForm, abandoned: Callable[[], bool]
+    ) -> None:
+        self._served, self.goal, self._form, self._abandoned = served, goal, form, abandoned
         self._last: Fields | None = None
+        self._sent_at = 0.0
+        self._left_at: float | None = None
 
-    def report(self) -> None:
-        """Send feedback if it differs from the last one."""
+    def left(self, now: float) -> bool:
+        """Return whether the goal must be cancelled, because no client has been left for a while.
+
+        The graph does not tell whose goal it is, so a goal continues while any client of its action lives.
+        """
+        if self.goal.offer.when_left != "cancel" or not self._abandoned():
+            self._left_at = None
+            return False
+        self._left_at = now if self._left_at is None else self._left_at
+        return now - self._left_at >= LEFT_AFTER
+
+    def report(self, now: float) -> None:
+        """Send feedback if it differs from the last one, or that one is old: clients ignore what comes too early."""
         goal = self.goal
         doing = "" if goal.over or goal.state in (PENDING, WAITING) else goal.doing()
         if not doing:
             return
         fields = self._form.feedback(doing, goal.progress, goal.note)
-        if fields != self._last:
-            self._last = fields
+        if fields != self._last or now - self._sent_at >= REPEATING:
+            self._last, self._sent_at = fields, now
             self._served.feedback(fields)
 
 
@@ -44,19 +66,26 @@ class Pursuits:
     def __len__(self) -> int:
         return len(self._known)
 
-    def changed(self, goal_id: str) -> None:
+    def changed(self, goal_id: str, now: float) -> None:
         """Send feedback of a goal that has changed."""
         found = self._known.get(goal_id)
         if found is not None:
-            found.report()
+            found.report(now)
 
-    def look(self, most: int) -> None:
-        """Send feedback of at most this number of goals. Those that are not looked at have their turn next."""
+    def look(self, most: int, now: float) -> None:
+        """Send feedback of at most this number of goals. Those that are not looked at have their turn next.
+
+        Goals whose clients have left are cancelled if their offers say so.
+        """
         for goal_id in list(self._known)[:most]:
             found = self._known[goal_id] = self._known.pop(goal_id)
-            found.report()
+            found.report(now)
+            if found.left(now):
+                found.goal.cancel()
 
-    async def pursue(self, served: ServerGoal, session: Session, form: GoalForm) -> Fields | None:
+    async def pursue(
+        self, served: ServerGoal, session: Session, form: GoalForm, abandoned: Callable[[], bool]
+    ) -> Fields | None:
         """Let the agent pursue a goal of the graph. Return the fields of the result.
 
         Raises:
@@ -66,7 +95,7 @@ class Pursuits:
             goal = form.give(session, served.request)
         except RequestError as error:
             raise Abort(error.message, form.refusal(error)) from None
-        self._known[goal.id] = Pursuit(served, goal, form)
+        self._known[goal.id] = Pursuit(served, goal, form, abandoned)
         try:
             await _ended(served, goal, session)
         finally:

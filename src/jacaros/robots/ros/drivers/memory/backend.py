@@ -135,6 +135,7 @@ class MemoryActionServer:
         self._node = node
         self._graph = node.graph
         self._goals = ServedGoals(node.clock, node.factory, name, type_name, execute, policy, node.log)
+        self._clients: set[ActionClient] = set()
         self._graph.offer("action", name, self)
         node.keep(self)
 
@@ -147,6 +148,7 @@ class MemoryActionServer:
             self._graph.tell(client.rejected, goal_id, refusal)
             return
         tell = self._graph.tell
+        self._clients = {each for each in (*self._clients, client) if not each.closed}
         tell(client.accepted, goal_id)
 
         def feedback(message: Any) -> None:
@@ -154,6 +156,11 @@ class MemoryActionServer:
                 tell(client.feedback, goal_id, message)
 
         self._goals.begin(goal_id, request, feedback, partial(tell, client.ended, goal_id))
+
+    @property
+    def abandoned(self) -> bool:
+        """Whether the clients that have sent goals are closed."""
+        return all(each.closed for each in self._clients)
 
     def cancel(self, goal_id: str, client: ActionClient) -> None:
         """Handle a request to cancel."""

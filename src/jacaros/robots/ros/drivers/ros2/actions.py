@@ -106,6 +106,11 @@ class Ros2ActionServer:
         ]
         node.keep(self)
 
+    @property
+    def abandoned(self) -> bool:
+        """Whether no node listens to the feedback."""
+        return bool(self._node.rcl.count_subscribers(self.name + FEEDBACK) == 0)
+
     def close(self) -> None:
         """Stop offering the action."""
         if self._closed:

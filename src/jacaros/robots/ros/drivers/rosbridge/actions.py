@@ -372,6 +372,7 @@ class BridgeActionServer:
         self._node = node
         self._offer = (name, type_name, execute, policy)
         self._service: ActionlibServer | Ros2GoalService | None = None
+        self.abandoned = False
         if node.attached:
             self.join()
 
