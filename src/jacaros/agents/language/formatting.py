@@ -282,8 +282,9 @@ class _Layout:
         if item.kind != "{":
             inner = _Frame(item.kind, behind, behind, behind - 1, spans_lines)
         elif starts:
-            base = frame.base + _BODY
-            inner = _Frame("{", base, base, frame.base, spans_lines, _holds_plans(item), "clause")
+            base, plans = frame.base + _BODY, _holds_plans(item)
+            spans_lines = spans_lines and plans  # a directive continues on its line
+            inner = _Frame("{", base, base, frame.base, spans_lines, plans, "clause")
         else:
             control = self._last is not None and self._last.kind in (")", "else")
             base = step + _BLOCK
