@@ -18,6 +18,7 @@ from jacaros.agents.mind.state.intention import (
     EVENT_CAUSE,
     EVENT_GOAL,
     EVENT_INTENTION,
+    FIRST_SLOT,
     GOAL,
     SERIAL,
     STEP,
@@ -436,7 +437,7 @@ class WatchedGoal:
         self.identity = (_WATCHED, float(id(self)))
         intention = Intention(agent, cause)
         intention.on_failed, intention.on_end = (self._intention_failed, ()), (self._intention_ended, ())
-        frame: Frame = [self._reached, self.identity, BY_SELF, agent.trail.serial, _BOTTOM]
+        frame: Frame = [self._reached, self.identity, BY_SELF, agent.trail.serial, _BOTTOM, *arguments]
         intention.frames.append(frame)
         given = own_annotations(annotations)
         agent.post((supervised(agent, intention, posted, given), intention, given, cause))
@@ -458,7 +459,10 @@ class WatchedGoal:
     def _reached(self, agent: Circumstance, frame: Frame) -> None:
         del agent
         frame[STEP] = None
-        self.achieved = True
+        self.achieved, self.arguments = (
+            True,
+            tuple(frame[FIRST_SLOT:]),
+        )  # of the branch that continues after a fork
         self._on_end()
 
     def _intention_failed(self, _: Circumstance, reason: FailureReason | None) -> None:
