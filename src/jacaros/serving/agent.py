@@ -11,7 +11,7 @@ from jacaros.runtime.mas.agents.host import AgentHost
 from jacaros.runtime.mas.history.history import observe_turns
 from jacaros.runtime.trace import Cause
 from jacaros.serving.arguments import Data, named
-from jacaros.serving.goals import PENDING, WAITING, RequestedGoal
+from jacaros.serving.goals import CANCELLING, PENDING, WAITING, RequestedGoal
 from jacaros.serving.questions import answers_of
 
 PERIOD = 0.05
@@ -99,7 +99,7 @@ class OfferingAgent:
         elif goal.offer.when_busy == "replace":
             self._queue.appendleft((goal, cause))
             goal.queue()
-            busy[0].cancel()
+            self._replace_for(goal)
         elif goal.offer.when_busy == "wait" and len(self._queue) < MOST_WAITING:
             self._queue.append((goal, cause))
             goal.queue()
@@ -122,6 +122,13 @@ class OfferingAgent:
         if following is not None:
             self._pending[following[0].id] = following[0]
             following[0].post(following[1])
+
+    def _replace_for(self, goal: RequestedGoal) -> None:
+        """Cancel the oldest goal of the same offer, which may still wait for its own turn."""
+        for each in self.alive.values():
+            if each.offer is goal.offer and each is not goal and each.state != CANCELLING:
+                each.cancel()
+                return
 
     def _busy_with(self, offer: Offer) -> list[RequestedGoal]:
         return [each for each in self.alive.values() if each.offer is offer and each.state != WAITING]

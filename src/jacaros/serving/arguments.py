@@ -22,7 +22,7 @@ from jacaros.agents.language.loader import parse_literal
 from jacaros.agents.language.lowering import Variables, lower_value
 from jacaros.agents.language.offers import Offer, Parameter
 from jacaros.agents.terms.operators import ArithmeticFault
-from jacaros.agents.terms.substitution import resolve
+from jacaros.agents.terms.substitution import is_ground, resolve
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.values import (
     FALSE,
@@ -208,6 +208,8 @@ def check_terms(offer: Offer, arguments: Sequence[Term], open_inputs: bool = Fal
         if term.__class__ is Var and (each.output or open_inputs):
             continue
         try:
+            if not (each.output or open_inputs or is_ground(term)):
+                raise ValueError("must not contain a variable")
             check_term(term, each)
         except ValueError as error:
             wrong.append(f"`{each.name}` {error}")

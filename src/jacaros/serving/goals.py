@@ -141,7 +141,8 @@ class RequestedGoal:
         self._enter(PENDING)
 
         def adopt(_: object = None) -> None:
-            self._watched = WatchedGoal(mind, goal, self._news, self._dropped, cause)
+            if not self.over:  # it was cancelled in the same step
+                self._watched = WatchedGoal(mind, goal, self._news, self._dropped, cause)
 
         if mind.running:
             mind.do_soon(adopt)

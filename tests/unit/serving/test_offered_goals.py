@@ -7,7 +7,7 @@ import pytest
 from serving_lab import Lab, run
 
 from jacaros.serving.callers import RequestError
-from jacaros.serving.service import Event
+from jacaros.serving.service import MOST_ALIVE, Event
 
 
 def refused(request: Any, code: str) -> str:
@@ -226,3 +226,115 @@ def test_a_motion_has_ended_when_its_goal_is_cancelled() -> None:
         assert abs(robot.speed) < 1e-3
 
     run(test, program, world="patrol")
+
+
+def test_of_goals_that_replace_each_other_the_newest_is_pursued() -> None:
+    async def test(lab: Lab) -> None:
+        anna = lab.session()
+        first = anna.achieve("bob", "search")
+        await asyncio.sleep(1)
+        second, third = anna.achieve("bob", "search"), anna.achieve("bob", "search")
+        assert (first.state, second.state, third.state) == ("cancelling", "cancelled", "waiting")
+        await first.wait()
+        await asyncio.sleep(1)
+        third.cancel()
+        await third.wait()
+        assert lab.mas.agent("bob").goals == []
+
+    run(test)
+
+
+def test_a_goal_that_is_cancelled_immediately_is_not_pursued() -> None:
+    program = """
+    { offer(goal, go) } { offer(event, seen) }
+    +!go <- .print(going); .wait(1000); .print(gone).
+    +look <- .announce(seen).
+    """
+
+    async def test(lab: Lab) -> None:
+        anna = lab.session()
+        goals = [anna.achieve("bob", "go")]
+        goals[0].cancel()
+
+        def in_a_step(event: Event) -> None:
+            if event["event"] == "announced":
+                goals.append(anna.achieve("bob", "go"))
+                goals[1].cancel()
+
+        await goals[0].wait()
+        anna.listen(in_a_step)
+        lab.mas.agent("bob").add_belief("look")
+        await asyncio.sleep(3)
+        assert [each.state for each in goals] == ["cancelled", "cancelled"]
+
+    assert run(test, program) == []
+
+
+def test_a_plan_that_forks_reports_progress_has_results_and_can_be_cancelled() -> None:
+    program = """
+    { offer(goal, both(n(out(number)))) }
+    +!both(N) <- (!one |&| !two); N = 3.
+    +!one <- .wait(1000); .progress(0.5, "one").
+    @two[cleanup(tidy)] +!two <- .wait(2000); .progress(0.7, "two").
+    +!tidy <- .print(tidied).
+    """
+
+    async def test(lab: Lab) -> None:
+        anna = lab.session()
+        notes: list[str] = []
+        anna.listen(lambda event: notes.append(event["note"]))
+        goal = anna.achieve("bob", "both")
+        await goal.wait()
+        assert (goal.state, goal.results, goal.progress) == ("achieved", {"n": 3}, 0.7)
+        assert list(dict.fromkeys(notes)) == ["", "one", "two"]
+        assert lab.mas.clock.elapsed == pytest.approx(2.0)
+        goal = anna.achieve("bob", "both")
+        await asyncio.sleep(1.5)
+        goal.cancel()
+        await goal.wait()
+        assert goal.state == "cancelled"
+        assert lab.mas.agent("bob").goals == []
+        assert lab.mas.clock.elapsed == pytest.approx(3.5)
+
+    assert run(test, program) == ["[bob] tidied"]
+
+
+def test_goals_end_with_the_run() -> None:
+    async def test(lab: Lab) -> None:
+        anna = lab.session()
+        goals = [anna.achieve("bob", name) for name in ("search", "wash", "wash")]
+        await asyncio.sleep(0.1)
+        lab.mas.stop()
+        await lab.mas.ended()
+        for each in goals:
+            await each.wait()
+        assert [each.state for each in goals] == ["failed"] * 3
+        refused(lambda: anna.achieve("bob", "wash"), "ended")
+
+    run(test)
+
+
+def test_the_goals_of_a_session_are_limited() -> None:
+    async def test(lab: Lab) -> None:
+        warden = lab.session("warden", "warden")
+        for _ in range(MOST_ALIVE):
+            warden.achieve("bob", "guard")
+        refused(lambda: warden.achieve("bob", "guard"), "too_many_requests")
+        goal = lab.session("other", "warden").achieve("bob", "guard")
+        assert goal.state == "pending"
+        warden.close()
+
+    run(test)
+
+
+@pytest.mark.parametrize("written", ["anything(f(X))", "anything([1, X])", "anything(X)"])
+def test_inputs_have_no_variables(written: str) -> None:
+    program = "{ offer(goal, anything(x)) } { offer(tell, anything(x)) } +!anything(_). +anything(_)."
+
+    async def test(lab: Lab) -> None:
+        anna = lab.session()
+        refused(lambda: anna.achieve_text("bob", written), "invalid_arguments")
+        refused(lambda: anna.tell_text("bob", written), "invalid_arguments")
+        assert lab.mas.agent("bob").beliefs == []
+
+    run(test, program)
