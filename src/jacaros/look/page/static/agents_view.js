@@ -3,6 +3,7 @@ import { Console } from "./console.js";
 import { button, element, setText } from "./elements.js";
 import { IntentionCards } from "./intention_cards.js";
 import { MailList, RuleList } from "./mind_lists.js";
+import { OfferedGoals } from "./offered_goals.js";
 import { Picker } from "./picker.js";
 import { PlanList } from "./plan_list.js";
 import { Section } from "./section.js";
@@ -18,6 +19,7 @@ export class AgentsView {
     this.about = element("span", "about");
     this.robots = element("span", "robots-used");
     this.console = new Console(context);
+    this.offered = new OfferedGoals(context);
     this.sections = [
       new Section("Intentions", new IntentionCards(context)),
       new Section("Beliefs", new BeliefList(context)),
@@ -25,7 +27,7 @@ export class AgentsView {
       new Section("Rules", new RuleList(), false),
       new Section("Plans", new PlanList(context), false),
     ];
-    this.mind = element("div", "mind", element("div", "mind-head", this.name, this.about, this.robots), this.console.root, ...this.sections.map(({ root: each }) => each));
+    this.mind = element("div", "mind", element("div", "mind-head", this.name, this.about, this.robots), this.console.root, this.offered.root, ...this.sections.map(({ root: each }) => each));
     root.append(this.picker.root, this.mind);
   }
 
@@ -41,6 +43,7 @@ export class AgentsView {
     setText(this.about, [mind.what === "python" ? "Python" : "", mind.runsAt(t) ? "" : "ended"].filter(Boolean).join(", "));
     this.showRobots(mind, t);
     this.console.show(mind, t);
+    this.offered.show(mind, t);
     for (const section of this.sections) section.show(mind, t);
   }
 
