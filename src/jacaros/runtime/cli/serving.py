@@ -95,7 +95,12 @@ class RequestedService:
 
         host, port = self.serve
         tokens = None if self.tokens is None else read_tokens(self.tokens)
-        door = HttpDoor(mas, Address(host, port, self.tls_cert, self.tls_key), tokens)
+        mounts = {}
+        if find_spec("mcp") is not None:
+            from jacaros.serving.mcp.http import PATH, mcp_app
+
+            mounts[PATH] = mcp_app(mas)
+        door = HttpDoor(mas, Address(host, port, self.tls_cert, self.tls_key), tokens, mounts)
         log(f"serve: {door.url}", "info")
         if tokens is None:
             log(f"serve: the token of an operator is {door.token}", "info")

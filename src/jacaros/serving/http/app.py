@@ -12,7 +12,7 @@ from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
 from starlette.requests import HTTPConnection, Request
 from starlette.responses import Response, StreamingResponse
-from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
+from starlette.routing import BaseRoute, Route, WebSocketRoute
 from starlette.types import ASGIApp
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
@@ -78,7 +78,7 @@ class Resources:
             route("GET", "/artifacts", self.artifacts),
             route("GET", "/questions", self.questions),
             route("POST", "/questions/{id}", self.answer),
-            *(Mount(path, app) for path, app in mounts.items()),
+            *(Route(path, app) for path, app in mounts.items()),  # not below it: MCP has one address
         ]
         handlers: dict[Any, Any] = {
             RequestError: problems.on_request_error,
