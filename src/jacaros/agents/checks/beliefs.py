@@ -143,7 +143,7 @@ def _unmet(
 
 def unawaited(program: nodes.Program, adders: Mapping[str, Sequence[Adder]]) -> Iterator[Diagnostic]:
     """Return notes about test goals for one number of a measurement that no earlier step of the plan waits for."""
-    for plan in program.plans:
+    for plan in filter(is_own, program.plans):
         known = {each.functor for each in nodes_in(nodes.Literal, plan.trigger)}
         for step in plan.body.steps if isinstance(plan.body, nodes.Body) else ():
             if isinstance(step, nodes.Achieve):
@@ -154,7 +154,7 @@ def unawaited(program: nodes.Program, adders: Mapping[str, Sequence[Adder]]) -> 
                 is_measured = bool(given) and all(
                     each.kind == "number" and not each.options for each in given
                 )
-                if is_measured and asked.functor not in known and is_own(asked):
+                if is_measured and asked.functor not in known:
                     text = as_written(asked)
                     message = f"`?{text}` fails unless the value is exactly this one when it is tested"
                     yield problem(

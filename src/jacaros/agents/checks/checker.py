@@ -142,7 +142,7 @@ def check(program: nodes.Program, known: KnownActions, errors: Sequence[Diagnost
 def check_for_run(program: nodes.Program, known: KnownActions) -> list[Diagnostic]:
     """Return the warnings of `check` that nearly always point to a mistake; matters of style are left out."""
     # A copy: the run keeps the program, and does not need the index of its nodes.
-    return sorted(dict.fromkeys(_mistakes(replace(program), known, ())), key=place)
+    return sorted(dict.fromkeys(_mistakes(replace(program, walked={}), known, ())), key=place)
 
 
 def _mistakes(program: nodes.Program, known: KnownActions, errors: Sequence[Diagnostic]) -> list[Diagnostic]:
@@ -165,7 +165,7 @@ def _mistakes(program: nodes.Program, known: KnownActions, errors: Sequence[Diag
         warnings += loops_without_wait(program, found, known)
         warnings += missed_events(program, found, known)
         warnings += [*wrong_announcements(program, found), *misspelt_choices(program, found)]
-        warnings += [*unused_handlers(found, known), *facts_for_goals(program)]
+        warnings += [*unused_handlers(program, known), *facts_for_goals(program)]
     return warnings
 
 

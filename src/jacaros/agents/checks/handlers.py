@@ -2,7 +2,7 @@
 
 >>> from jacaros.agents.language.loader import load_program
 >>> program, _ = load_program("robot.asl", "!start. +!start <- !go_to(3). +!go_to(X) <- drive(X). -!goto(X).")
->>> [each.help for each in unused_handlers(ByKind(program.goals, program.plans), KnownActions({}))]
+>>> [each.help for each in unused_handlers(program, KnownActions({}))]
 ['did you mean `-!go_to/1`?']
 """
 
@@ -16,7 +16,7 @@ from jacaros.agents.checks.formulas import labelled
 from jacaros.agents.checks.goals import ON_GOALS, PRINTING, KnownActions
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic, Span, problem
-from jacaros.agents.language.nodes import ByKind, names_in, nodes_in, walk
+from jacaros.agents.language.nodes import ByKind, names_in, walk
 from jacaros.runtime.files.texts import close_matches, did_you_mean
 
 Key = tuple[str, int]
@@ -76,10 +76,11 @@ def _key(literal: nodes.Literal) -> Key:
     return literal.functor, len(literal.arguments)
 
 
-def unused_handlers(found: ByKind, known: KnownActions) -> Iterator[Diagnostic]:
+def unused_handlers(program: nodes.Program, known: KnownActions) -> Iterator[Diagnostic]:
     """Warn of ``-!g`` and ``-?g`` plans for goals that nothing posts and that have no plan."""
-    if is_open(found, known):
+    if _is_open(program, known):
         return
+    found = program.found
     posts = Posts(found)
     yield from _misspelt_plans(found, posts)
     for plan, literal in _of_goals(found.of(nodes.Plan), "-"):
@@ -148,19 +149,19 @@ def _is_own(literal: nodes.Literal) -> bool:
     return literal.namespace is None and (literal.span is None or literal.span.file.name[:1] != "$")
 
 
-def is_open(found: ByKind, known: KnownActions) -> bool:
+def _is_open(program: nodes.Program, known: KnownActions) -> bool:
     """Return whether goals or plans come from elsewhere: a plan for any goal, a computed goal, plans added at run time."""
+    found = program.found
     return (
         any(isinstance(each.literal, nodes.Variable) and each.kind for each in found.of(nodes.Trigger))
-        or any(map(_computes_goal, found.of(nodes.Plan)))
+        or any(_computes_goal(plan, in_plan) for plan, in_plan in program.in_plans)
         or any(known.of(call).brings_in for call in found.of(nodes.InternalAction))
     )
 
 
-def _computes_goal(plan: nodes.Plan) -> bool:
+def _computes_goal(plan: nodes.Plan, in_plan: ByKind) -> bool:
     """Return whether a plan posts a goal from elsewhere. An argument of its own goal is in the program that posts that."""
-    steps = nodes_in(nodes.Achieve, (plan.body, plan.subplans))
-    names = {step.goal.name for step in steps if isinstance(step.goal, nodes.Variable)}
+    names = {step.goal.name for step in in_plan.of(nodes.Achieve) if isinstance(step.goal, nodes.Variable)}
     return bool(names) and not (plan.trigger.kind == "!" and names.issubset(names_in(plan.trigger.literal)))
 
 
@@ -185,10 +186,9 @@ def never_posted(
         known: their internal actions.
         is_project: whether a place is in a file that only this project uses.
     """
-    found = [each.found for each in programs]
-    if any(is_open(each, known) for each in found):
+    if any(_is_open(each, known) for each in programs):
         return
-    posts = Posts(*found)
+    posts = Posts(*(each.found for each in programs))
     for plan, literal in _of_goals((plan for each in programs for plan in each.plans), "+"):
         trigger = plan.trigger
         is_test = any(item.functor == "test" for item in labelled(plan))

@@ -9,6 +9,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
+from jacaros.agents.checks.flow import is_own
 from jacaros.agents.checks.formulas import conditions, contradiction, implies, is_true
 from jacaros.agents.checks.goals import KnownActions
 from jacaros.agents.language import nodes
@@ -32,10 +33,12 @@ def never_selected(program: nodes.Program, found: ByKind, known: KnownActions) -
 
 def _shadowed(plans: Sequence[nodes.Plan]) -> Iterator[Diagnostic]:
     taken, narrower = _Taken(), _Conditional()
+    own = {getattr(each.trigger.literal, "functor", "") for each in plans if is_own(each)}
     for plan in plans:
-        yield from _shadowed(plan.subplans)
+        if plan.subplans:
+            yield from _shadowed(plan.subplans)
         literal = plan.trigger.literal
-        if isinstance(literal, nodes.Variable):
+        if isinstance(literal, nodes.Variable) or literal.functor not in own:
             continue
         before = taken.covering(plan.trigger, literal)
         if before is not None:
@@ -201,12 +204,12 @@ def _where(before: nodes.Plan, plan: nodes.Plan) -> str:
 
 def contexts_never_true(found: ByKind) -> Iterator[Diagnostic]:
     """Warn of plans whose context contradicts itself, and of such conditions of rules and statements."""
-    for plan in found.of(nodes.Plan):
+    for plan in filter(is_own, found.of(nodes.Plan)):
         if plan.context is not None:
             yield from _never(
                 "unreachable plan", contradiction(plan.context), plan.context, plan.trigger.span
             )
-    for node in found.of(nodes.Rule, nodes.If, nodes.While):
+    for node in filter(is_own, found.of(nodes.Rule, nodes.If, nodes.While)):
         for condition in conditions(node):  # a constant switches off what it is the condition of
             yield from _never(
                 "this condition never holds", contradiction(condition, False), condition, node.span

@@ -381,13 +381,20 @@ class RegisteredFunction(Node):
 
 @dataclass(frozen=True)
 class Program:
-    """An agent program with its includes resolved, in source order per kind."""
+    """An agent program with its includes resolved, in source order per kind.
+
+    Attributes:
+        walked: plans with their nodes, by identity; programs that include the same library may share them.
+    """
 
     beliefs: tuple[Literal | Rule, ...] = ()
     goals: tuple[Literal, ...] = ()
     plans: tuple[Plan, ...] = ()
     functions: tuple[RegisteredFunction, ...] = ()
     offers: tuple[Offer, ...] = ()
+    walked: dict[int, tuple[Plan, ByKind]] = field(
+        default_factory=dict, compare=False, repr=False, kw_only=True
+    )
 
     @cached_property
     def found(self) -> ByKind:
@@ -404,7 +411,10 @@ class Program:
     @cached_property
     def in_plans(self) -> list[tuple[Plan, ByKind]]:
         """The plans, each with its nodes."""
-        return [(plan, ByKind(plan)) for plan in self.plans]
+        for plan in self.plans:
+            if id(plan) not in self.walked:
+                self.walked[id(plan)] = plan, ByKind(plan)
+        return [self.walked[id(plan)] for plan in self.plans]
 
 
 def form_of(offer: Offer) -> Literal:

@@ -50,5 +50,5 @@ def _classes(node: ast.AST, outer: str = "") -> Iterator[tuple[str, ast.ClassDef
             yield from _classes(child, f"{outer}{child.name}.")
         elif isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef):
             yield from _classes(child, f"{outer}{child.name}.<locals>.")
-        elif not isinstance(child, ast.expr):
+        elif isinstance(child, ast.stmt | ast.excepthandler | ast.match_case):
             yield from _classes(child, outer)

@@ -63,10 +63,12 @@ def _calls(code: ast.ClassDef | None, methods: tuple[str, ...]) -> Iterator[tupl
                 yield name.value, f"{name.value}({values})" if values else name.value
 
 
-def _in_order(node: ast.AST) -> Iterator[ast.AST]:
-    for child in ast.iter_child_nodes(node):
-        yield child
-        yield from _in_order(child)
+def _in_order(root: ast.AST) -> Iterator[ast.AST]:
+    below = [root]
+    while below:
+        node = below.pop()
+        yield node
+        below += reversed(list(ast.iter_child_nodes(node)))
 
 
 def _value(node: ast.expr) -> str:

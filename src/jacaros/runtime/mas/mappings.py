@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span
 from jacaros.robots.mapping.checking import UNCERTAIN, type_problems
@@ -18,6 +19,9 @@ from jacaros.robots.mapping.offer_codec import offer_problems
 from jacaros.runtime.files.texts import suggestion
 from jacaros.runtime.files.yaml import Problem, top_keys
 from jacaros.runtime.mas.deployment import ArtifactSpec, Deployment, FocusSpec, ProjectError, WorkspaceSpec
+
+if TYPE_CHECKING:
+    from jacaros.runtime.mas.checks.observables import Observables
 
 MAIN = "main"
 """The workspace of mapped artifacts."""
@@ -75,7 +79,9 @@ def _diagnostic(source: SourceFile, problem: Problem, wrong: str) -> Diagnostic:
     return Diagnostic("error", problem.message, span, problem.help or None, wrong)
 
 
-def check_mapping_file(path: Path, beside: Sequence[Path] = ()) -> list[Diagnostic]:
+def check_mapping_file(
+    path: Path, observables: "Observables", beside: Sequence[Path] = ()
+) -> list[Diagnostic]:
     """Return the errors of a mapping file, also against the message types that are known without a robot, and against
     the files *beside* it in a project.
     """
@@ -95,17 +101,18 @@ def check_mapping_file(path: Path, beside: Sequence[Path] = ()) -> list[Diagnost
     warnings = diagnostics_of(mapping.file, mapping.text, misspelt, UNKNOWN_PROPERTY)
     errors = diagnostics_of(mapping.file, mapping.text, problems)
     if not problems:
-        warnings += diagnostics_of(mapping.file, mapping.text, _coarse_fields(mapping), WRONG_UNIT)
+        warnings += diagnostics_of(
+            mapping.file, mapping.text, _coarse_fields(mapping, observables), WRONG_UNIT
+        )
     return errors + [replace(each, severity="warning") for each in warnings]
 
 
-def _coarse_fields(mapping: MappingFile) -> Iterator[Problem]:
+def _coarse_fields(mapping: MappingFile, observables: "Observables") -> Iterator[Problem]:
     """Yield fields that are rounded to whole numbers in a unit in which that leaves nearly nothing of the value."""
     from jacaros.robots.mapping.artifact import mapped_type  # here: few runs check
-    from jacaros.runtime.mas.checks.observables import Observables
 
     for name, part in mapping.artifacts.items():
-        values = Observables().of([mapped_type(mapping, name)]) or {}
+        values = observables.of([mapped_type(mapping, name)]) or {}
         for topic in part.topics:
             fields = [field for field in topic.fields or () for _ in range(field.count)]
             for field, value in zip(fields, values[topic.name][0].values, strict=False):

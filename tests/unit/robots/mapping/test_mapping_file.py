@@ -9,6 +9,7 @@ from mapped_lab import mistakes
 
 from jacaros.robots.mapping.file import MappingError, MappingFile, find_mapping, load_mapping, read_mapping
 from jacaros.robots.ros.qos import LATCHED, SENSOR_DATA, QoS
+from jacaros.runtime.mas.checks.observables import Observables
 from jacaros.runtime.mas.mappings import check_mapping_file
 
 
@@ -241,7 +242,7 @@ def test_a_mistake_is_reported_with_location_and_help_and_types_are_checked_too(
     found = told(text)
     assert any(each.startswith(expected) for each in found), found
     (tmp_path / "m.yaml").write_text(text, encoding="utf-8")
-    assert check_mapping_file(tmp_path / "m.yaml")
+    assert check_mapping_file(tmp_path / "m.yaml", Observables())
 
 
 def test_an_empty_file_is_reported() -> None:

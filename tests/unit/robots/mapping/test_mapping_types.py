@@ -8,6 +8,7 @@ from mapped_lab import mistakes
 from jacaros.robots.mapping.checking import check_mapping
 from jacaros.robots.mapping.file import MappingError, read_mapping
 from jacaros.robots.mapping.interfaces import stored_interfaces
+from jacaros.runtime.mas.checks.observables import Observables
 from jacaros.runtime.mas.mappings import check_mapping_file
 
 SHORT = {
@@ -153,7 +154,7 @@ def test_an_unknown_unit_does_not_stop_the_check_of_types(unit: str, tmp_path: P
     head = "properties:\n  a:\n    topic: t\n    type: nav_msgs/msg/Odometry\n    fields:\n"
     field = f"      - {{path: pose.pose.position.x, unit: {unit}}}\n"
     file.write_text(f"{head}{field}      - pose.nothing\n", encoding="utf-8")
-    messages = [each.message for each in check_mapping_file(file)]
+    messages = [each.message for each in check_mapping_file(file, Observables())]
     assert any(each.startswith("unknown unit") for each in messages)
     assert any("has no field `nothing`" in each for each in messages)
 

@@ -8,7 +8,7 @@ operations at run time, and an agent architecture may run actions itself.
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence, Set
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
@@ -45,25 +45,17 @@ _FAKE: Final = "fake_action"
 
 def check_artifacts(
     programs: Sequence[tuple[AgentSpec, nodes.Program]],
-    folders: Sequence[Path],
-    find_type: "FindType",
-    types: "Sequence[type[Artifact]] | None",
+    types: "Sequence[type[Artifact]]",
     observables: Observables,
 ) -> list[Diagnostic]:
     """Return warnings about what agents do with the artifacts of a project.
 
     Args:
         programs: the agents with their programs, including included files.
-        folders: folders of the project, with its mapping files.
-        find_type: finds the artifact classes of the project.
-        types: the types of all its artifacts; None if they are not known.
+        types: the types of all its artifacts.
         observables: reads the code of artifact types.
     """
-    named = [each for _, program in programs for each in _named_types(program)[0] if each.of_library]
-    found = list(_unknown_types(named, folders, find_type))
-    if types is not None:
-        found += [*_unknown_operations(programs, types, observables), *_unknown_resources(programs, types)]
-    return found
+    return [*_unknown_operations(programs, types, observables), *_unknown_resources(programs, types)]
 
 
 # ---- operations
@@ -242,10 +234,24 @@ class _NamedType(NamedTuple):
     """Whether it is an argument of an action or of a goal of a library, which is certainly a type."""
 
 
-def _unknown_types(
-    named: Iterable[_NamedType], folders: Sequence[Path], find_type: "FindType"
+@dataclass(frozen=True)
+class NamedTypes:
+    """The types that a program creates artifacts of.
+
+    Attributes:
+        found: by the terms that name them.
+        certain: whether it creates no others at run time.
+    """
+
+    found: Sequence[_NamedType]
+    certain: bool
+
+
+def unknown_types(
+    named: Iterable[NamedTypes], folders: Sequence[Path], find_type: "FindType"
 ) -> Iterator[Diagnostic]:
-    for each in named:
+    """Warn of types that programs name and that do not exist, but for mapping files with errors."""
+    for each in (each for one in named for each in one.found if each.of_library):
         try:
             find_type(each.name)
         except UnknownArtifactType as unknown:
@@ -266,32 +272,23 @@ def is_wrong_mapping(type_name: str, folders: Sequence[Path]) -> bool:
 
 
 def made_types(
-    deployment: Deployment, programs: Sequence[nodes.Program], find_type: "FindType"
+    deployment: Deployment, named: Iterable[NamedTypes], find_type: "FindType"
 ) -> "list[type[Artifact]] | None":
     """Return the types of all artifacts of a project; None if they are not known before it runs."""
     names = [artifact.type_name for workspace in deployment.workspaces for artifact in workspace.artifacts]
-    for program in programs:
-        named, certain = _named_types(program)
-        if not certain:
+    for one in named:
+        if not one.certain:
             return None
-        names += [each.name for each in named]
+        names += [each.name for each in one.found]
     try:
-        return [find_type(name) for name in dict.fromkeys(names)]
+        return list(dict.fromkeys(map(find_type, dict.fromkeys(names))))
     except Exception:
         # An unknown type, or a module with an error, is reported at its location.
         return None
 
 
-def artifact_types(program: nodes.Program) -> list[str]:
-    """Return the artifact types that a program names."""
-    return [each.name for each in _named_types(program)[0]]
-
-
-def _named_types(program: nodes.Program) -> tuple[list[_NamedType], bool]:
-    """Return the types that a program creates artifacts of, and whether it creates no others at run time.
-
-    A type may be the argument of a goal whose plan creates the artifact.
-    """
+def named_types(program: nodes.Program) -> NamedTypes:
+    """Return the types that a program names. One may be the argument of a goal whose plan creates the artifact."""
     uses: dict[Key, list[tuple[nodes.Literal, nodes.Plan | None]]] = {}
     posted: set[Key] = set()
     for plan, literals in _uses(program):
@@ -316,7 +313,7 @@ def _named_types(program: nodes.Program) -> tuple[list[_NamedType], bool]:
             certain &= given is not None
             if given is not None and given not in places:
                 places.append(given)
-    return named, certain
+    return NamedTypes(named, certain)
 
 
 def type_of(wanted: nodes.Term) -> str | None:

@@ -9,7 +9,8 @@ import os
 import re
 from collections import Counter
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -67,10 +68,30 @@ class Whole:
     Attributes:
         programs: the different programs of its agents.
         types: the types of its artifacts; None: not known.
+        reading: reads the properties and signals of artifact types.
     """
 
     programs: Sequence[nodes.Program]
     types: "Sequence[type[Artifact]] | None"
+    reading: Observables = field(default_factory=Observables)
+
+    @cached_property
+    def observables(self) -> dict[str, list[Adder]] | None:
+        """The properties and signals of its artifacts; None: not known."""
+        return None if self.types is None else self.reading.of(self.types)
+
+    @cached_property
+    def flows(self) -> list[ProgramFlow]:
+        """Where each program has its beliefs from."""
+        return flows_of(self.programs, STANDARD, self.observables)
+
+    def with_others(self, others: "Sequence[Whole]") -> "Whole":
+        """Return one project with the programs of others after its own."""
+        wholes = (self, *others)
+        programs = [program for each in wholes for program in each.programs]
+        kinds = dict.fromkeys(kind for each in wholes for kind in each.types or ())
+        is_known = all(each.types is not None for each in wholes)
+        return Whole(programs, list(kinds) if is_known else None, self.reading)
 
 
 @dataclass(frozen=True)
@@ -83,7 +104,6 @@ class Surroundings:
         others: returns other projects that run the same programs; None: not known. Called on demand.
         is_lone: there is only one program, which may be run with mapping files that are not given.
         is_partial: other agents of the project are written in Python, and may add any beliefs.
-        observables: reads the properties and signals of artifact types.
     """
 
     folders: tuple[Path, ...] = ()
@@ -91,12 +111,12 @@ class Surroundings:
     others: Callable[[], Sequence[Whole] | None] = lambda: ()
     is_lone: bool = False
     is_partial: bool = False
-    observables: Observables = field(default_factory=Observables)
 
 
 def check_beliefs(whole: Whole, around: Surroundings) -> list[Diagnostic]:
     """Return warnings about beliefs that programs use and nothing adds, and about their values."""
-    if not list(_BeliefCheck([whole], around).findings(frozenset())):
+    check = _BeliefCheck(whole, around)
+    if not list(check.findings(frozenset())):
         return []
     # Only if there is something to report, other projects and other files are read.
     others = around.others()
@@ -104,32 +124,29 @@ def check_beliefs(whole: Whole, around: Surroundings) -> list[Diagnostic]:
         return []
     types = [each for one in (whole, *others) for each in one.types or ()]
     elsewhere = words_elsewhere(around.folders, around.files | set(_sources(types)), around.is_lone)
-    check = _BeliefCheck([whole, *others], around)
+    if others:
+        around = replace(around, is_lone=False)
+        check = _BeliefCheck(whole.with_others(others), around, len(whole.programs))
     own = {file for flow in check.flows for file in flow.files}  # the others are found under other paths
     found = () if elsewhere is None else check.findings(elsewhere)
     return [each for each in found if each.span is None or each.span.file.name in own]
 
 
 class _BeliefCheck:
-    """The findings about the first one of some projects that run the same programs."""
+    """The findings about a project, or about its first programs only."""
 
-    def __init__(self, wholes: Sequence[Whole], around: Surroundings) -> None:
-        self._is_lone = around.is_lone and len(wholes) == 1
-        self._is_partial = around.is_partial
-        programs = [program for each in wholes for program in each.programs]
-        is_known = all(each.types is not None for each in wholes)
-        types = list(dict.fromkeys(kind for each in wholes for kind in each.types or ()))
-        observables = around.observables.of(types) if is_known else None
-        flows = flows_of(programs, STANDARD, observables)
-        self._flow = Flow(flows, observables or {})
-        self.flows = flows[: len(wholes[0].programs)]
-        self._knows_artifacts = observables is not None
+    def __init__(self, whole: Whole, around: Surroundings, count: int | None = None) -> None:
+        self._is_lone, self._is_partial = around.is_lone, around.is_partial
+        programs, types, flows = whole.programs, whole.types or (), whole.flows
+        self._flow = Flow(flows, whole.observables or {})
+        self.flows = flows[:count]
+        self._knows_artifacts = whole.observables is not None
         self._programs = programs
         self._is_closed = (
             self._knows_artifacts
             and not around.is_partial
             and not any(each.tells_unseen for each in flows)
-            and not lacks_actions(programs, types, around.observables)
+            and not lacks_actions(programs, types, whole.reading)
         )
         self._units = parameter_units(types) if self._is_closed else {}
         self._misspelt = _misspelt_adders(flows, self._flow.observables)
@@ -141,6 +158,7 @@ class _BeliefCheck:
         """Return the findings about beliefs that do not appear *elsewhere*."""
         if self._flow.is_open:
             return
+        self._reported.clear()
         said = [each.spelled if self._is_closed else each.said for each in self._flow.programs]
         doubtful = elsewhere.union(_OF_THE_SYSTEM, *said)
         yield from self._never_read(doubtful)

@@ -34,7 +34,7 @@ from jacaros.runtime.mas.project.reading import read_project
 
 if TYPE_CHECKING:
     from jacaros.artifacts.env.artifact import Artifact
-    from jacaros.runtime.mas.checks.artifacts import FindType
+    from jacaros.runtime.mas.checks.artifacts import FindType, NamedTypes
     from jacaros.runtime.mas.checks.beliefs import Whole
     from jacaros.runtime.mas.checks.observables import Observables
 
@@ -186,10 +186,8 @@ def _check_lone_program(path: Path, findings: Findings) -> Set[Path]:
     if checked.check_program(AgentSpec(path.stem, path)):
         checked.check_beliefs(is_lone=True)
         checked.check_mappings()
-        from jacaros.runtime.mas.checks.artifacts import artifact_types  # here: see `_Checked.of_artifacts`
-
         # Without any artifacts, its actions may belong to any artifact.
-        if any(artifact_types(program) for _, program in checked.programs):
+        if any(each.found for each in checked.named_types):
             # A run may add artifacts with --mapping: an operation unlike all known ones may be theirs.
             findings.diagnostics += [
                 each
@@ -246,6 +244,7 @@ class _Checked:
         self._code = PythonCode(self._modules)
         self._path = SourcePath(folders)
         self._names = new_names(self._code.functions, self._code.actions)
+        self._walked: dict[int, tuple[nodes.Plan, nodes.ByKind]] = {}
         self.programs: list[tuple[AgentSpec, nodes.Program]] = []
 
     @cached_property
@@ -285,6 +284,7 @@ class _Checked:
             findings.diagnostics += error.diagnostics
             return False
         program, diagnostics = read_program(sources[0], include, self._names.for_program())
+        program = replace(program, walked=self._walked)
         diagnostics += [replace(error, code="unreadable-file") for error in code.take_errors()]
         errors = [diagnostic for diagnostic in diagnostics if diagnostic.severity == "error"]
         known = KnownActions(code.actions, code.help, code.is_unseen)
@@ -311,11 +311,9 @@ class _Checked:
 
     def check_mappings(self) -> None:
         """Check the mapping files that the project, or ``makeArtifact`` in its programs, names."""
-        from jacaros.runtime.mas.checks.artifacts import artifact_types  # here: see `of_artifacts`
-
         spaces = self.deployment.workspaces
         names = [artifact.type_name for workspace in spaces for artifact in workspace.artifacts]
-        names += [name for _, program in self.programs for name in artifact_types(program)]
+        names += [each.name for named in self.named_types for each in named.found]
         files = [
             file
             for file in dict.fromkeys(each.partition("#")[0] for each in names)
@@ -338,6 +336,7 @@ class _Checked:
             is_wrong_mapping,
             made_types,
             operations_as_goals,
+            unknown_types,
         )
         from jacaros.runtime.mas.environment import types_of
 
@@ -360,7 +359,9 @@ class _Checked:
         types = self._made_types if is_known else made_types(self.deployment, (), find_type)
         if is_known:
             self._findings.diagnostics[:] = map(operations_as_goals(types or ()), self._findings.diagnostics)
-        found = check_artifacts(programs, self._folders, find_type, types, self._findings.observables)
+        found = list(unknown_types(self.named_types if is_known else (), self._folders, find_type))
+        if types is not None:
+            found += check_artifacts(programs, types, self._findings.observables)
         if types is None or not is_known:
             known = KnownActions(STANDARD)
             return [*found, *(each for _, program in self.programs for each in missing_marks(program, known))]
@@ -391,7 +392,8 @@ class _Checked:
             return find_type(kind).interface.operations.find(name, arity) is not None
 
         in_python = _words(self._python_agents())
-        return check_focus(self.deployment, every or self.programs, properties, offers, in_python)
+        flows = {id(each): flow for each, flow in zip(self._whole.programs, self._whole.flows, strict=True)}
+        return check_focus(self.deployment, every or self.programs, properties, offers, flows, in_python)
 
     def is_built_in_python(self) -> bool:
         """Return whether Python agents, or modules beside them, may make artifacts or give other agents plans."""
@@ -427,15 +429,23 @@ class _Checked:
         # The working folder may be any, with any words in its files.
         base = self.deployment.base_path.absolute()
         own = tuple(each for each in self._folders if each.absolute().is_relative_to(base))
-        around = Surroundings(
-            own, self._findings.files, self._others, is_lone, is_partial, self._findings.observables
-        )
-        self._findings.diagnostics += check_beliefs(self._whole(), around)
+        around = Surroundings(own, self._findings.files, self._others, is_lone, is_partial)
+        self._findings.diagnostics += check_beliefs(self._whole, around)
 
+    @cached_property
     def _whole(self) -> "Whole":
+        """The project as the check of beliefs sees it. Asked for when all programs are read."""
         from jacaros.runtime.mas.checks.beliefs import Whole  # here: see `of_artifacts`
 
-        return Whole([program for _, program in self.programs], self._made_types)
+        programs = [program for _, program in self.programs]
+        return Whole(programs, self._made_types, self._findings.observables)
+
+    @cached_property
+    def named_types(self) -> "list[NamedTypes]":
+        """The artifact types that each program names. Asked for when all programs are read."""
+        from jacaros.runtime.mas.checks.artifacts import named_types  # here: see `of_artifacts`
+
+        return [named_types(program) for _, program in self.programs]
 
     @cached_property
     def _made_types(self) -> "list[type[Artifact]] | None":
@@ -443,7 +453,7 @@ class _Checked:
         from jacaros.runtime.mas.checks.artifacts import made_types  # here: see `of_artifacts`
 
         try:
-            return made_types(self.deployment, [program for _, program in self.programs], self._find_type)
+            return made_types(self.deployment, self.named_types, self._find_type)
         except ModuleUnreadable:  # reported with the artifacts
             return None
 
@@ -471,7 +481,7 @@ class _Checked:
             for agent in agents:
                 if agent.agent_class or agent.is_python or not other.check_program(agent):
                     return None
-            found.append(other._whole())
+            found.append(other._whole)
         return found
 
 
@@ -522,7 +532,7 @@ def _check_mapping(path: Path, findings: Findings, beside: Sequence[Path] = ()) 
     from jacaros.runtime.mas.mappings import check_mapping_file  # here: programs are checked without
 
     findings.files.add(path.resolve())
-    findings.diagnostics += check_mapping_file(path, beside)
+    findings.diagnostics += check_mapping_file(path, findings.observables, beside)
 
 
 def _words(files: Iterable[Path]) -> frozenset[str]:

@@ -4,16 +4,15 @@ Only an agent whose program shows all that it focuses is looked at.
 """
 
 import re
-from collections.abc import Iterable, Iterator, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from itertools import chain
 from typing import TYPE_CHECKING, Final
 
-from jacaros.agents.checks.flow import Reader, flows_of, is_own, key_of
+from jacaros.agents.checks.flow import ProgramFlow, Reader, is_own, key_of
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.agents.language.lowering import format_term
 from jacaros.agents.language.nodes import ByKind
-from jacaros.agents.mind.actions.internal_action import STANDARD
 from jacaros.runtime.mas.checks.artifacts import Offered, type_of
 from jacaros.runtime.mas.deployment import AgentSpec, Deployment
 
@@ -45,6 +44,7 @@ def check_focus(
     programs: Programs,
     properties: "Properties",
     offers: "Offers",
+    flows: Mapping[int, ProgramFlow],
     elsewhere: frozenset[str] = frozenset(),
 ) -> list[Diagnostic]:
     """Return warnings about properties of artifacts that agents do not focus, and artifacts that agents cannot use.
@@ -54,6 +54,7 @@ def check_focus(
         programs: all its agents with their programs, but for those in Python.
         properties: returns the names of properties and signals of an artifact type; None if they are not known.
         offers: returns whether an artifact type has an operation of a name and a number of arguments.
+        flows: where programs have their beliefs from, by the identities of the programs.
         elsewhere: the words in the code of agents in Python, which may join, make or tell what they name.
     """
     joined = {name for agent in (*deployment.agents, *(each for each, _ in programs)) for name in agent.join}
@@ -64,7 +65,7 @@ def check_focus(
             for agent, program in programs
             for each in _not_joined(deployment, agent, program, joined, offers)
         ),
-        *_Focus(deployment, programs, properties).findings(elsewhere),
+        *_Focus(deployment, programs, properties).findings(flows, elsewhere),
     ]
 
 
@@ -141,7 +142,7 @@ class _Focus:
                 if kind:
                     self._by_name.setdefault(name, set()).add(kind)
 
-    def findings(self, elsewhere: frozenset[str]) -> Iterator[Diagnostic]:
+    def findings(self, flow_of: Mapping[int, ProgramFlow], elsewhere: frozenset[str]) -> Iterator[Diagnostic]:
         """Return a warning for each property that an agent uses and does not focus."""
         owners = self._owners()
         if owners is None:
@@ -154,7 +155,7 @@ class _Focus:
             seen.append({name for kind in kinds for name in self._properties(kind) or ()})
         if all(each >= owners.keys() for each in seen):
             return
-        flows = flows_of([program for _, program in self._programs], STANDARD)
+        flows = [flow_of[id(program)] for _, program in self._programs]
         if any(flow.is_open or flow.tells_unseen for flow in flows):
             return
         added = elsewhere.union(name for flow in flows for name in (*flow.adders, *flow.told))
