@@ -22,7 +22,7 @@ from jacaros.runtime.files.texts import is_file, suggestion
 from jacaros.runtime.files.yaml import plain_values
 from jacaros.runtime.mas.agents.programs import TEST_LIBRARY, Programs, SourcePath, source_folders, text_of
 from jacaros.runtime.mas.agents.python_code import PythonCode
-from jacaros.runtime.mas.checks.artifacts import artifact_types
+from jacaros.runtime.mas.checks.artifacts import named_types
 from jacaros.runtime.mas.checks.files import MAPPINGS, PROJECTS, files_below
 from jacaros.runtime.mas.deployment import Deployment, ProjectError
 from jacaros.runtime.mas.mappings import diagnostics_of
@@ -243,7 +243,8 @@ class ProgramFiles:
                 self._add_project(path, project)
         tested = [each for each in programs.values() if not each.is_test]
         for program in tested:
-            self._add_types(artifact_types(program.tree), (self._folder, program.path.parent))
+            names = [each.name for each in named_types(program.tree).found]
+            self._add_types(names, (self._folder, program.path.parent))
         for path in _source_files(self._folder, (".py",)):
             self._add_python(path)
         for path in _source_files(self._folder, MAPPINGS):

@@ -1,4 +1,6 @@
-"""Find out what the robot can do, and use it, as a language model does over MCP: ``TOKEN=… python mcp_client.py soap bathroom``.
+"""Find out what the robot can do, and use it, as a language model does over MCP.
+
+    TOKEN=... python mcp_client.py soap bathroom
 
 A language model joins with the same address and token. This client needs ``pip install "jacaros[mcp]"``.
 """
