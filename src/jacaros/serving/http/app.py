@@ -116,16 +116,22 @@ class Resources:
         """``POST /agents/A/goals/G``: give it a goal."""
         given, wait = await arguments_of(request), _wait(request)
         agent, name = request.path_params["agent"], request.path_params["name"]
-        goal = await client.do(lambda session: session.achieve(agent, name, given))
+        taken: list[RequestedGoal] = []
 
-        async def settled(_: Session) -> dict[str, Any]:
+        def take(session: Session) -> RequestedGoal:
+            if not taken:
+                taken.append(session.achieve(agent, name, given))
+            return taken[0]
+
+        async def settled(session: Session) -> dict[str, Any]:
+            goal = take(session)
             await (goal.wait() if wait else goal.decided())
             return goal.data()
 
-        data = await _within(request, client.wait(settled), wait or SOON)
-        if data is None:
-            data = await client.do(lambda _: goal.data())
-        place = f"/goals/{goal.id}"
+        data = await _within(request, client.wait(settled), wait, SOON)
+        if data is None:  # `settled` is cancelled: if it has not begun, it never will
+            data = await client.do(lambda session: take(session).data())
+        goal, place = taken[0], f"/goals/{data['id']}"
         if data["state"] == REFUSED_STATE:
             return problem("refused", goal.message, reasons_of(goal.reasons), goal=place)
         return _json(data, 201, {"Location": place, **_applied(wait)})
@@ -279,11 +285,23 @@ async def _messages(stream: Stream) -> AsyncIterator[str]:
 T = TypeVar("T")
 
 
-async def _within(request: Request, work: Coroutine[Any, Any, T], seconds: float) -> T | None:
-    """Return the result of *work*, or None if it takes longer, or the client leaves."""
+async def _within(
+    request: Request, work: Coroutine[Any, Any, T], wait: float, usual: float = 0.0
+) -> T | None:
+    """Return the result of *work*, or None if it takes longer, or the client that waits leaves.
+
+    Args:
+        wait: seconds that the client is ready to wait; 0 for *usual* seconds.
+    """
+    if not wait:
+        try:
+            async with asyncio.timeout(usual):
+                return await work
+        except TimeoutError:
+            return None
     working, leaving = asyncio.create_task(work), asyncio.create_task(_left(request))
     try:
-        await asyncio.wait((working, leaving), timeout=seconds, return_when=asyncio.FIRST_COMPLETED)
+        await asyncio.wait((working, leaving), timeout=wait, return_when=asyncio.FIRST_COMPLETED)
         return working.result() if working.done() else None
     finally:
         working.cancel()

@@ -28,6 +28,8 @@ from jacaros.serving.tokens import Tokens
 
 GOODBYE = 1
 """Seconds for the last responses and events when the run ends."""
+KEEP_ALIVE = 30
+"""Seconds that a connection stays open between two requests."""
 LARGEST_HEADER = 16 * 1024
 """Maximum size of the header of a request, in bytes."""
 MountedApp = Callable[[Crossing], AbstractAsyncContextManager[ASGIApp]]
@@ -132,6 +134,7 @@ class HttpDoor:
             access_log=False,
             proxy_headers=False,
             server_header=False,
+            timeout_keep_alive=KEEP_ALIVE,
             timeout_graceful_shutdown=GOODBYE,
             ssl_certfile=self._address.certificate,
             ssl_keyfile=self._address.key,
