@@ -227,7 +227,7 @@ class Resources:
         async def lines() -> AsyncIterator[str]:
             try:
                 yield ": connected\n\n"
-                async for each in _messages(stream):
+                async for each in messages(stream):
                     yield f"data: {each}\n\n" if each else ":\n\n"
             finally:
                 await asyncio.shield(client.end(stream, stop))
@@ -245,7 +245,7 @@ class Resources:
         try:
             await socket.accept()
             reading = asyncio.create_task(_until_closed(socket, stream))
-            async for each in _messages(stream):
+            async for each in messages(stream):
                 if each:
                     await socket.send_text(each)
             reading.cancel()
@@ -264,7 +264,7 @@ async def _until_closed(socket: WebSocket, stream: Stream) -> None:
     stream.put(None)
 
 
-async def _messages(stream: Stream) -> AsyncIterator[str]:
+async def messages(stream: Stream) -> AsyncIterator[str]:
     """Yield the events of a stream until its end, and empty texts in times of silence."""
     while True:
         try:
