@@ -11,7 +11,8 @@ from jacaros.runtime.mas.agents.host import AgentHost
 from jacaros.runtime.mas.history.history import observe_turns
 from jacaros.runtime.trace import Cause
 from jacaros.serving.arguments import Data, named
-from jacaros.serving.goals import CANCELLING, PENDING, WAITING, RequestedGoal
+from jacaros.serving.callers import RequestError
+from jacaros.serving.goals import CANCELLING, WAITING, RequestedGoal
 from jacaros.serving.questions import answers_of
 
 PERIOD = 0.05
@@ -56,13 +57,12 @@ class OfferingAgent:
         self.name, self.host = host.name, host
         self.offers: tuple[Offer, ...] = host.mind.program.offers
         self.alive: dict[str, RequestedGoal] = {}
-        self._pending: dict[str, RequestedGoal] = {}
         self._announce = announce
         self._queue: deque[tuple[RequestedGoal, Cause | None]] = deque()
         self._watched: dict[str, Watch] = {}
         self._looks_soon = False
         host.mind.observers.callers = self
-        self._end_turns = observe_turns(host, self._had_turn)
+        self._end_turns = observe_turns(host, self._look_soon)
 
     @property
     def mind(self) -> Mind:
@@ -94,7 +94,6 @@ class OfferingAgent:
         busy = [] if limit is None else self._busy_with(goal.offer)
         self.alive[goal.id] = goal
         if limit is None or len(busy) < limit:
-            self._pending[goal.id] = goal
             goal.post(cause)
         elif goal.offer.when_busy == "replace":
             self._queue.appendleft((goal, cause))
@@ -111,7 +110,6 @@ class OfferingAgent:
     def ended(self, goal: RequestedGoal) -> None:
         """A goal has ended: the next one that waits has its turn."""
         self.alive.pop(goal.id, None)
-        self._pending.pop(goal.id, None)
         if not self._queue:
             return
         waiting = [each for each in self._queue if each[0].state == WAITING]
@@ -120,7 +118,6 @@ class OfferingAgent:
             following = None
         self._queue = deque(each for each in waiting if each is not following)
         if following is not None:
-            self._pending[following[0].id] = following[0]
             following[0].post(following[1])
 
     def _replace_for(self, goal: RequestedGoal) -> None:
@@ -133,11 +130,7 @@ class OfferingAgent:
     def _busy_with(self, offer: Offer) -> list[RequestedGoal]:
         return [each for each in self.alive.values() if each.offer is offer and each.state != WAITING]
 
-    def _had_turn(self) -> None:
-        for each in tuple(self._pending.values()):
-            each.look()
-            if each.state != PENDING:
-                self._pending.pop(each.id, None)
+    def _look_soon(self) -> None:
         if self._watched and not self._looks_soon:
             self._looks_soon = True
             self.host.system.clock.call_later(PERIOD, self._look)
@@ -193,7 +186,11 @@ class OfferingAgent:
         if self.host.ended:
             return
         for watch in tuple(self._watched.values()):
-            facts = self.facts(watch.offer)
+            try:
+                facts = self.facts(watch.offer)
+            except RequestError:  # a computer that is busy, or a rule that takes long
+                self._look_soon()
+                continue
             if facts != watch.facts:
                 watch.facts = facts
                 for listener in tuple(watch.listeners):

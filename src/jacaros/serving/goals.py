@@ -142,7 +142,7 @@ class RequestedGoal:
 
         def adopt(_: object = None) -> None:
             if not self.over:  # it was cancelled in the same step
-                self._watched = WatchedGoal(mind, goal, self._news, self._dropped, cause)
+                self._watched = WatchedGoal(mind, goal, self._news, self._dropped, cause, self.accept)
 
         if mind.running:
             mind.do_soon(adopt)
@@ -152,11 +152,6 @@ class RequestedGoal:
     def intentions(self) -> list[Intention]:
         """Return the intentions that pursue it."""
         return self._watched.intentions() if self._watched is not None and not self.over else []
-
-    def look(self) -> None:
-        """Accept it if its plan acts or waits. Called after each turn of the agent."""
-        if self.state == PENDING and any(each.state != "running" for each in self.intentions()):
-            self.accept()
 
     def accept(self) -> None:
         """The agent accepts it."""

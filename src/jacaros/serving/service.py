@@ -74,9 +74,10 @@ class Service:
     def close(self) -> None:
         """End all sessions: the run has ended, or is no longer served."""
         self._end_watch()
-        for agent in tuple(self.agents.values()):
-            agent.close()
+        agents = tuple(self.agents.values())
         self.agents.clear()
+        for agent in agents:
+            agent.close()
         for session in tuple(self.sessions):
             session.close()
 
@@ -120,7 +121,9 @@ class Service:
 
     def _log(self, goal: RequestedGoal) -> None:
         why = f": {goal.message}" if goal.message else ""
-        level = "warning" if goal.state == "failed" else "info" if goal.state == "refused" else "debug"
+        level = {"failed": "warning", "refused": "info"}.get(goal.state, "debug")
+        if goal.agent not in self.agents:
+            level = "debug"  # there may be hundreds when an agent or the run ends
         self.system.console.log(
             f"[{goal.agent}] {level}: {goal.state} !{goal.written} for {goal.caller}{why}", level
         )

@@ -2,6 +2,7 @@
 
 import asyncio
 from contextlib import suppress
+from typing import Any
 
 import pytest
 from hypothesis import given, settings
@@ -39,6 +40,20 @@ def test_questions_are_answered_in_a_view_that_changes_nothing() -> None:
         assert eve.ask("bob", "saying(3)") == [{}], "what it prints is not printed"
 
     assert run(test) == []
+
+
+def test_a_watched_belief_that_cannot_be_looked_at_keeps_its_last_value() -> None:
+    program = "{ offer(belief, b(x)) } n(1). b(X) :- n(X) & (X < 3 | X > 3 & .abolish(n(_)))."
+
+    async def test(lab: Lab) -> None:
+        heard: list[Any] = []
+        lab.session("eve", "observer").watch("bob", "b", heard.append)
+        for number in (5, 2):
+            lab.mas.agent("bob").replace_belief(f"n({number})")
+            await asyncio.sleep(1)
+        assert heard == [[{"x": 1}], [{"x": 2}]]
+
+    run(test, program)
 
 
 def test_requests_are_limited() -> None:

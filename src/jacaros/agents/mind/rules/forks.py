@@ -53,7 +53,7 @@ def fork(
         branch.frames = copied(parent.frames)
         branch.frames[-1][STEP] = first
         branch.handlers = list(parent.handlers)
-        branch.on_failed, branch.on_end = parent.on_failed, parent.on_end
+        branch.on_failed, branch.on_end, branch.on_wait = parent.on_failed, parent.on_end, parent.on_wait
         branch.forks = (*parent.forks, (point, number))
         agent.note_plans(branch)
         agent.make_ready(branch)

@@ -233,6 +233,8 @@ def suspend_intention(agent: Circumstance, intention: Intention, reason: Term = 
     if intention.suspended is not None and not is_preempted(intention):
         return
     intention.suspended = reason
+    if intention.on_wait is not None:
+        intention.on_wait()
     agent.incoming.called = True  # an intention that suspends itself ends its turn
     agent.take_out(intention)
     if agent.features.meta:
@@ -404,6 +406,7 @@ class WatchedGoal:
         on_end: called when the goal is achieved or has failed.
         on_dropped: called when it is over without having been achieved or having failed.
         cause: what led to it, outside the agent.
+        on_wait: called whenever an intention that pursues it begins to wait or is suspended.
 
     Attributes:
         identity: what the bottom frame of its intentions serves.
@@ -423,6 +426,7 @@ class WatchedGoal:
         on_end: Callable[[], None] = _nothing,
         on_dropped: Callable[[], None] = _nothing,
         cause: Cause | None = None,
+        on_wait: Callable[[], None] | None = None,
     ) -> None:
         symbol, arguments, annotations = parts(rename(goal))
         if symbol is None:
@@ -437,6 +441,7 @@ class WatchedGoal:
         self.identity = (_WATCHED, float(id(self)))
         intention = Intention(agent, cause)
         intention.on_failed, intention.on_end = (self._intention_failed, ()), (self._intention_ended, ())
+        intention.on_wait = on_wait
         frame: Frame = [self._reached, self.identity, BY_SELF, agent.trail.serial, _BOTTOM, *arguments]
         intention.frames.append(frame)
         given = own_annotations(annotations)

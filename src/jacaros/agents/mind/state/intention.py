@@ -48,6 +48,7 @@ class Intention:
         on_failed: called instead of the usual warning when it ends in failure, with the agent and the reason
             (`FailureReason`, or None), and the arguments that follow these; or None.
         on_end: called with the agent and the arguments when it is over, however it ended; or None.
+        on_wait: called whenever it begins to wait or is suspended; or None.
     """
 
     __slots__ = (
@@ -59,6 +60,7 @@ class Intention:
         "id",
         "on_end",
         "on_failed",
+        "on_wait",
         "outer",
         "suspended",
         "urgencies",
@@ -81,6 +83,7 @@ class Intention:
         self.forks: tuple[tuple[Any, int], ...] = ()
         self.on_failed: tuple[Callable[..., None], tuple[Any, ...]] | None = None
         self.on_end: tuple[Callable[..., None], tuple[Any, ...]] | None = None
+        self.on_wait: Callable[[], None] | None = None
 
     @property
     def state(self) -> str:

@@ -189,6 +189,8 @@ class Waiting:
         """Suspend the step in *frame*, which continues with *next_step*."""
         self.frame, self.next_step = frame, next_step
         self.intention.waiting = self
+        if self.intention.on_wait is not None:
+            self.intention.on_wait()
 
 
 @dataclass(slots=True, eq=False)

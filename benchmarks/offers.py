@@ -1,0 +1,94 @@
+"""Load on what agents offer: goals per second from one session, and sessions that watch, while the agent has its own work.
+
+    python benchmarks/offers.py [SECONDS] [GOALS_PER_SECOND] [WATCHING]
+
+Prints goals lost, the time from a goal to its end, the agent's ticks per second, and memory in the middle and at the end.
+"""
+
+import asyncio
+import resource
+import statistics
+import sys
+import time
+from contextlib import suppress
+from typing import Any
+
+from jacaros import Mas
+from jacaros.serving.callers import Caller, RequestError
+from jacaros.serving.goals import OVER
+from jacaros.serving.service import service_of
+
+PROGRAM = """
+{ offer(goal, add(a(number), b(number), sum(out(number))), at_most(any)) }
+{ offer(goal, pause(ms(number)), at_most(any)) }
+{ offer(belief, ticks(n(number))) }
+ticks(0).
+!tick.
+@tick[urgency(10)] +!tick : ticks(N) <- -+ticks(N + 1); .wait(20); !!tick.
++!add(A, B, A + B).
++!pause(Ms) <- .wait(Ms).
+"""
+
+
+def megabytes() -> float:
+    """Return the memory of this process now, in MB."""
+    with open("/proc/self/statm", encoding="ascii") as file:
+        return int(file.read().split()[1]) * resource.getpagesize() / 1e6
+
+
+async def give(session: Any, rate: float, seconds: float) -> list[Any]:
+    """Give goals at a rate; every tenth one waits for 200 ms. Return them. What is too much now is given later."""
+    goals: list[Any] = []
+    began = time.perf_counter()
+    while (now := time.perf_counter() - began) < seconds or len(goals) < rate * seconds:
+        with suppress(RequestError):
+            while len(goals) < min(now, seconds) * rate:
+                number = len(goals)
+                name, given = ("add", [number, 1]) if number % 10 else ("pause", [200])
+                goals.append(session.achieve("robot", name, given))
+        await asyncio.sleep(0.01)
+    return goals
+
+
+async def main(seconds: float, rate: float, watching: int) -> None:
+    """Measure."""
+    async with Mas(seed=1) as mas:
+        robot = mas.add_agent("robot", PROGRAM)
+        service = service_of(mas.system)
+        session = service.open(Caller("load", "python", frozenset({"user"})))
+        changes = 0
+
+        def changed(_: object) -> None:
+            nonlocal changes
+            changes += 1
+
+        for number in range(int(watching)):
+            watcher = service.open(Caller(f"watcher{number}", "python", frozenset({"operator"})))
+            watcher.watch("robot", "ticks", changed)
+            watcher.listen(changed)
+        await asyncio.sleep(1)
+        first = (robot.ask("ticks(N)") or {})["N"]
+        began = time.perf_counter()
+        goals = await give(session, rate, seconds / 2)
+        middle = megabytes()
+        goals += await give(session, rate, seconds / 2)
+        await asyncio.sleep(0.5)
+        took = time.perf_counter() - began - 0.5
+        ticks = ((robot.ask("ticks(N)") or {})["N"] - first) / (took + 0.5)
+        lost = sum(each.state != "achieved" for each in goals)
+        short = [each.ended - each.began for each in goals if each.state in OVER and each.offer.name == "add"]
+        print(f"{len(goals) / took:.0f} goals/s for {took:.0f} s, {lost} not achieved")
+        print(
+            f"from a goal to its end: median {statistics.median(short) * 1000:.2f} ms, longest {max(short) * 1000:.0f} ms"
+        )
+        print(
+            f"{ticks:.1f} ticks/s of the agent (50 wanted), {changes / took:.0f} changes/s heard by {watching} sessions"
+        )
+        print(
+            f"{middle:.0f} MB in the middle, {megabytes():.0f} MB at the end, kept: {len(service.goals)} goals"
+        )
+
+
+if __name__ == "__main__":
+    given = [float(each) for each in sys.argv[1:]]
+    asyncio.run(main(*given, *(60.0, 500.0, 0)[len(given) :]))  # type: ignore[arg-type]
