@@ -22,18 +22,27 @@ def time_limit(seconds: float) -> Iterator[None]:
     The check is a profile function of the calling thread: it needs no other thread and no signal, and works on every
     system. A single call into C, such as the concatenation of two strings, is not interrupted.
     """
-    until, before = real_time() + seconds, sys.getprofile()
+    until, before, hook = real_time() + seconds, sys.getprofile(), sys.unraisablehook
 
-    def check(_frame: FrameType, _event: str, _argument: object) -> None:
-        if real_time() > until:
+    def check(frame: FrameType, _event: str, _argument: object) -> None:
+        if real_time() > until and frame.f_code is not go_on.__code__:
             sys.setprofile(before)
             raise TimeIsUp
 
+    def go_on(ignored: "sys.UnraisableHookArgs") -> None:
+        # Where an object goes, such as a generator, the interpreter ignores the exception. Raise it again after that.
+        if ignored.exc_type is TimeIsUp:
+            sys.setprofile(check)
+        else:
+            hook(ignored)
+
+    sys.unraisablehook = go_on
     sys.setprofile(check)
     try:
         yield
     finally:
         sys.setprofile(before)
+        sys.unraisablehook = hook
 
 
 def within(seconds: float, compute: Callable[[], T]) -> T | None:
