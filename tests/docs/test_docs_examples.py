@@ -14,6 +14,7 @@ LANGUAGES = {
     "diff",
     "ebnf",
     "jcm",
+    "json",
     "mas2j",
     "python",
     "sh",
