@@ -1,9 +1,9 @@
 """Findings about beliefs: names, numbers of arguments and values that nothing gives them.
 
->>> from jacaros.agents.checks.flow import Flow, flow_of
+>>> from jacaros.agents.checks.flow import Flow, flows_of
 >>> from jacaros.agents.language.loader import load_program
 >>> program, _ = load_program("robot.asl", 'mode("idle"). +!go : mode(idle).')
->>> flow = flow_of(program, {})
+>>> [flow] = flows_of([program], {})
 >>> [each.message for each in mismatches(flow, Flow([flow]).adders(flow))]
 ['`mode(idle)` never matches: `idle` is an atom, but the only value of `mode/1` is the string `"idle"`']
 >>> is_misspelt("batery", "battery"), is_misspelt("room1", "room2")
@@ -18,7 +18,6 @@ from typing import Final
 
 from jacaros.agents.checks.flow import (
     Adder,
-    Key,
     ProgramFlow,
     Reader,
     Value,
@@ -29,6 +28,7 @@ from jacaros.agents.checks.flow import (
     value_of,
     variables_of,
 )
+from jacaros.agents.checks.formulas import Key
 from jacaros.agents.language import nodes
 from jacaros.agents.language.cursor import is_slip_of
 from jacaros.agents.language.diagnostics import Diagnostic, problem

@@ -26,6 +26,7 @@ from jacaros.agents.checks.goals import (
     acting_conditions,
     doubtful_values,
     goals_without_plan,
+    signature,
     unknown_actions,
     unknown_performatives,
     wrong_arguments,
@@ -217,9 +218,7 @@ def narrow_handlers(program: nodes.Program) -> Iterator[Diagnostic]:
             if is_true(plan.context):
                 return
             continue
-        literal = trigger.literal
-        key = (trigger.kind, literal.namespace, literal.negated, literal.functor, len(literal.arguments))
-        handlers.setdefault(key, []).append(plan)
+        handlers.setdefault((trigger.kind, signature(trigger.literal)), []).append(plan)
     for plans in handlers.values():
         if not any(is_true(plan.context) for plan in plans):
             trigger = plans[-1].trigger

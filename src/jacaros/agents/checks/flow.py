@@ -2,7 +2,7 @@
 
 >>> from jacaros.agents.language.loader import load_program
 >>> program, _ = load_program("robot.asl", "mode(idle). +!go : mode(M) <- -+mode(3); .send(bob, tell, at(home)).")
->>> flow = flow_of(program, {})
+>>> [flow] = flows_of([program], {})
 >>> [(each.how, each.values[0].kind) for each in flow.adders["mode"]]
 [('fact', 'atom'), ('step', 'number')]
 >>> [(each.how, each.key) for each in flow.readers]
@@ -14,15 +14,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final, NamedTuple
 
-from jacaros.agents.checks.formulas import conditions
+from jacaros.agents.checks.formulas import Key, conditions
 from jacaros.agents.language import nodes
 from jacaros.agents.language.lowering import format_term
 from jacaros.agents.language.nodes import UNDECLARED, Declaration, children, form_of
 from jacaros.agents.language.offers import Offer, Parameter
 from jacaros.agents.terms.functions import ARITIES
 
-Key = tuple[str, int]
-"""Name and number of arguments; the name of a strongly negated belief begins with ``~``."""
 ANY: Final = -1
 """A number of arguments that is not known."""
 
@@ -143,15 +141,6 @@ class ProgramFlow:
                 setattr(self, name, own | added)
 
 
-def flow_of(
-    program: nodes.Program,
-    actions: Mapping[str, Declaration],
-    observables: Mapping[str, Sequence[Adder]] | None = None,
-) -> ProgramFlow:
-    """Return the flow of a program; see `flows_of`."""
-    return flows_of([program], actions, observables)[0]
-
-
 def flows_of(
     programs: Iterable[nodes.Program],
     actions: Mapping[str, Declaration],
@@ -184,7 +173,7 @@ def flows_of(
 
 
 def key_of(literal: nodes.Literal) -> Key:
-    """Name and number of arguments of a belief."""
+    """Name and number of arguments of a belief; the name of a strongly negated one begins with ``~``."""
     name = literal.functor.strip("'")
     return (f"~{name}" if literal.negated else name), len(literal.arguments)
 

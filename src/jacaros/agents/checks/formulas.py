@@ -19,6 +19,8 @@ from jacaros.agents.terms.operators import BINARY
 from jacaros.runtime.files.texts import did_you_mean, suggestion
 
 Clause = nodes.Plan | nodes.Rule
+Key = tuple[str, int]
+"""Name and number of arguments."""
 
 
 def clauses(program: nodes.Program) -> Iterator[Clause]:
@@ -55,6 +57,11 @@ def conditions(node: nodes.Node) -> Iterator[nodes.Term]:
         yield node.body
     elif isinstance(node, nodes.Literal) and node.functor in ("while", "achieves"):
         yield from node.arguments[:1]
+
+
+def indicator_of(node: nodes.Node) -> Key:
+    """Return name and number of arguments of a literal; no name for other nodes."""
+    return (node.functor, len(node.arguments)) if isinstance(node, nodes.Literal) else ("", 0)
 
 
 def labelled(plan: nodes.Plan) -> list[nodes.Literal]:

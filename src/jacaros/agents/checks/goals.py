@@ -14,7 +14,7 @@ from itertools import chain
 from pathlib import Path
 from typing import Final
 
-from jacaros.agents.checks.formulas import CONDITIONED, conditions, labelled
+from jacaros.agents.checks.formulas import CONDITIONED, conditions, indicator_of, labelled
 from jacaros.agents.language import nodes
 from jacaros.agents.language.cursor import MOST_ASKED, is_slip_of
 from jacaros.agents.language.diagnostics import Diagnostic, problem
@@ -24,10 +24,6 @@ from jacaros.agents.terms.functions import ARITIES
 from jacaros.runtime.files.texts import close_matches, did_you_mean, suggestion
 
 # Check internal actions: names, numbers of arguments, and where they are used.
-
-
-def _no_hint(_: str) -> str | None:
-    return None
 
 
 @dataclass(frozen=True)
@@ -41,7 +37,7 @@ class KnownActions:
     """
 
     declared: Mapping[str, Declaration]
-    help: Callable[[str], str | None] = _no_hint
+    help: Callable[[str], str | None] = lambda _: None
     is_unseen: Callable[[str], bool] = lambda _: False
 
     def of(self, call: nodes.InternalAction) -> Declaration:
@@ -70,15 +66,10 @@ def unknown_actions(program: nodes.Program, found: ByKind, known: KnownActions) 
 
 
 def _meant_action(call: nodes.InternalAction, found: ByKind, known: KnownActions) -> str:
-    goal = ("!", call.name.removeprefix("."), len(call.arguments))
+    goal = "!", (call.name.removeprefix("."), len(call.arguments))
     for trigger in found.of(nodes.Trigger):
-        literal = trigger.literal
-        if isinstance(literal, nodes.Literal) and goal == (
-            trigger.kind,
-            literal.functor,
-            len(literal.arguments),
-        ):
-            return did_you_mean([f"!{literal.functor}"])
+        if (trigger.kind, indicator_of(trigger.literal)) == goal:
+            return did_you_mean([f"!{goal[1][0]}"])
     return known.help(call.name) or suggestion(call.name, known.declared)
 
 
@@ -166,15 +157,12 @@ def unknown_performatives(found: ByKind, known: KnownActions) -> Iterator[Diagno
         meant = [each for each in PERFORMATIVES if is_slip_of(word.functor.lower(), each.lower())]
         meant += [each for each in PERFORMATIVES if word.functor.lower() == each.lower()]
         if meant:
-            yield problem(
-                "unknown-performative",
-                f"unknown performative `{word.functor}`",
-                word.span,
-                did_you_mean(meant[:1]),
-            )
+            message = f"unknown performative `{word.functor}`"
+            yield problem("unknown-performative", message, word.span, did_you_mean(meant[:1]))
 
 
-_Signature = tuple[str | nodes.Variable | None, str, int]
+Signature = tuple[str | nodes.Variable | None, str, int]
+"""Namespace, name and number of arguments."""
 
 
 def goals_without_plan(program: nodes.Program, found: ByKind, known: KnownActions) -> Iterator[Diagnostic]:
@@ -188,7 +176,7 @@ def goals_without_plan(program: nodes.Program, found: ByKind, known: KnownAction
         known.of(call).brings_in and known.of(call).changes_plans for call in found.of(nodes.InternalAction)
     ):
         return
-    signatures = [_signature(trigger.literal) for trigger in triggers]
+    signatures = [signature(trigger.literal) for trigger in triggers]
     handled = {each for each in signatures if not isinstance(each[0], nodes.Variable)}
     everywhere = {each[1:] for each in signatures if isinstance(each[0], nodes.Variable)}
     posted: list[nodes.Node] = [*program.goals, *program.offered_goals]
@@ -197,23 +185,19 @@ def goals_without_plan(program: nodes.Program, found: ByKind, known: KnownAction
     posted += [mark.arguments[0] for mark in marks if mark.functor == "cleanup" and mark.arguments]
     if any(mark.functor == "test" for plan in program.plans for mark in labelled(plan)):
         everywhere |= _goals_of_tests()
-    with_plan = {_signature(each.literal) for each in triggers if each.operator != "-"}
+    with_plan = {signature(each.literal) for each in triggers if each.operator != "-"}
     # With a plan of that name for other arguments, one that only handles its failure is not enough.
     handled -= {each for each in handled - with_plan if any(each[:2] == other[:2] for other in with_plan)}
-    reported: set[_Signature] = set()
+    reported: set[Signature] = set()
     for goal in posted:
         if not isinstance(goal, nodes.Literal) or isinstance(goal.namespace, nodes.Variable):
             continue
-        signature = _signature(goal)
-        if signature in handled or signature in reported or signature[1:] in everywhere:
+        wanted = signature(goal)
+        if wanted in handled or wanted in reported or wanted[1:] in everywhere:
             continue
-        reported.add(signature)
-        yield problem(
-            "unknown-goal",
-            f"no plan for `{_goal_text(signature)}`",
-            goal.span,
-            _meant_goal(signature, with_plan & handled) if len(reported) <= MOST_ASKED else None,
-        )
+        reported.add(wanted)
+        help = _meant_goal(wanted, with_plan & handled) if len(reported) <= MOST_ASKED else None
+        yield problem("unknown-goal", f"no plan for `{_goal_text(wanted)}`", goal.span, help)
 
 
 _LIBRARY: Final = Path(__file__).parent.parent / "language" / "library"
@@ -230,19 +214,21 @@ def _goals_of_tests() -> frozenset[tuple[str, int]]:
     return frozenset((name, arguments.count(",") + 1 if arguments else 0) for name, arguments in heads)
 
 
-def _signature(literal: nodes.Literal | nodes.Variable) -> _Signature:
-    assert isinstance(literal, nodes.Literal)
+def signature(literal: nodes.Node) -> Signature:
+    """Return the signature of a literal, with ``~`` if it is negated; no name for other nodes."""
+    if not isinstance(literal, nodes.Literal):
+        return None, "", 0
     functor = f"~{literal.functor}" if literal.negated else literal.functor
     return (literal.namespace, functor, len(literal.arguments))
 
 
-def _goal_text(signature: _Signature) -> str:
+def _goal_text(signature: Signature) -> str:
     namespace, functor, arity = signature
     written = "" if namespace is None else f"{str(namespace).partition('#')[0]}::"
     return f"!{written}{functor}/{arity}"
 
 
-def _meant_goal(wanted: _Signature, handled: Iterable[_Signature]) -> str:
+def _meant_goal(wanted: Signature, handled: Iterable[Signature]) -> str:
     """Return the goal with a plan that is most similar to *wanted*: of the same or of a similar name."""
     within = [
         each

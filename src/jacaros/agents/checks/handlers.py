@@ -12,15 +12,13 @@ from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 from typing import Final
 
 from jacaros.agents.checks.beliefs import is_misspelt
-from jacaros.agents.checks.formulas import labelled
+from jacaros.agents.checks.flow import is_own
+from jacaros.agents.checks.formulas import Key, indicator_of, labelled
 from jacaros.agents.checks.goals import ON_GOALS, PRINTING, KnownActions
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic, Span, problem
 from jacaros.agents.language.nodes import ByKind, names_in, walk
 from jacaros.runtime.files.texts import close_matches, did_you_mean
-
-Key = tuple[str, int]
-"""Name and number of arguments of a goal or action."""
 
 _WORD: Final = re.compile(r"\w+")
 _OF_MESSAGES: Final = "kqml_received"
@@ -43,13 +41,9 @@ class Posts:
         steps = [step.action for each in found for step in each.of(nodes.ExternalAction)]
         no_posts = {id(each.literal) for each in triggers} | set(map(id, (*steps, *named, *walk(*printed))))
         self._literals = Counter(
-            _key(each) for one in found for each in one.of(nodes.Literal) if id(each) not in no_posts
+            indicator_of(each) for one in found for each in one.of(nodes.Literal) if id(each) not in no_posts
         )
-        self._reacted = {
-            _key(each.literal)
-            for each in triggers
-            if not each.kind and isinstance(each.literal, nodes.Literal)
-        }
+        self._reacted = {indicator_of(each.literal) for each in triggers if not each.kind}
         texts = [each.value for one in found for each in one.of(nodes.String) if id(each) not in no_posts]
         self._words = {word for text in texts for word in _WORD.findall(text)}
 
@@ -59,21 +53,14 @@ class Posts:
 
     def appears_only_as(self, facts: Sequence[nodes.Literal]) -> bool:
         """Return whether the name of facts appears nowhere but in these and in plans for the goal of that name."""
-        key = _key(facts[0])
+        key = indicator_of(facts[0])
         return self._literals[key] == len(facts) and key[0] not in self._words and key not in self._reacted
 
 
 def handled_in(found: ByKind) -> set[Key]:
     """Return the goals with plans ``+!g``."""
-    return {
-        _key(each.literal)
-        for each in found.of(nodes.Trigger)
-        if each.operator == "+" and each.kind == "!" and isinstance(each.literal, nodes.Literal)
-    }
-
-
-def _key(literal: nodes.Literal) -> Key:
-    return literal.functor, len(literal.arguments)
+    triggers = found.of(nodes.Trigger)
+    return {indicator_of(each.literal) for each in triggers if (each.operator, each.kind) == ("+", "!")}
 
 
 def unused_handlers(program: nodes.Program, known: KnownActions) -> Iterator[Diagnostic]:
@@ -84,37 +71,33 @@ def unused_handlers(program: nodes.Program, known: KnownActions) -> Iterator[Dia
     posts = Posts(found)
     yield from _misspelt_plans(found, posts)
     for plan, literal in _of_goals(found.of(nodes.Plan), "-"):
-        trigger, key = plan.trigger, _key(literal)
+        trigger, key = plan.trigger, indicator_of(literal)
         asked = any(
-            each.kind == "?" and _is_for(each, key) and each.operator == "+"
+            (each.operator, each.kind, indicator_of(each.literal)) == ("+", "?", key)
             for each in found.of(nodes.Trigger)
         )
         if not posts.may_post(key) and key not in posts.handled and not asked:
             meant = _meant(key, posts.handled)
             message = f"no goal `{trigger.kind}{_text(key)}` can fail: nothing posts it, and it has no plan"
-            yield problem(
-                "unused-handler",
-                message,
-                trigger.span,
-                did_you_mean(f"-!{_text(each)}" for each in meant) or None,
-            )
+            help = did_you_mean(f"-!{_text(each)}" for each in meant) or None
+            yield problem("unused-handler", message, trigger.span, help)
 
 
 def _misspelt_plans(found: ByKind, posts: Posts) -> Iterator[Diagnostic]:
     """Warn of plans for goals that nothing posts, if one of a similar name or another size is posted and has a plan."""
     posted = [step.goal for step in found.of(nodes.Achieve)]
     heads = [each.literal for each in found.of(nodes.Trigger) if each.kind == "!"]
-    with_plan = {_key(head) for head in heads if isinstance(head, nodes.Literal)}
-    known = {_key(goal) for goal in posted if isinstance(goal, nodes.Literal)} & with_plan
-    sizes = Counter(_key(head) for head in heads if isinstance(head, nodes.Literal))
+    sizes = Counter(map(indicator_of, heads))
+    known = sizes.keys() & map(indicator_of, posted)
     for plan, literal in _of_goals(found.of(nodes.Plan), "+"):
-        trigger, key = plan.trigger, _key(literal)
+        trigger, key = plan.trigger, indicator_of(literal)
         if trigger.kind != "!" or posts.may_post(key):
             continue
         meant = [f"+!{name}" for name, size in sorted(known) if size == key[1] and is_misspelt(key[0], name)]
         # A plan that begins the rounds of its own goal, as in `+!patrol <- !patrol(1).`, is for others to post. A number
         # of arguments that several plans have, such as `+!make(X)` and `-!make(X)`, is not a slip either.
-        if sizes[key] == 1 and not any(goal.functor == key[0] for goal in _posted_in(plan)):
+        steps = ByKind(plan.body, plan.subplans).of(nodes.Achieve)
+        if sizes[key] == 1 and key[0] not in {indicator_of(step.goal)[0] for step in steps}:
             meant += [f"+!{_text(each)}" for each in sorted(known) if each[0] == key[0]]
         if meant:
             message = f"nothing posts the goal `!{_text(key)}`"
@@ -124,29 +107,15 @@ def _misspelt_plans(found: ByKind, posts: Posts) -> Iterator[Diagnostic]:
 def _of_goals(plans: Iterable[nodes.Plan], operator: str) -> Iterator[tuple[nodes.Plan, nodes.Literal]]:
     """Yield the plans ``+!g`` and ``+?g``, or with ``-``, that are not of a library of JaCaROS, with their goals."""
     for plan in plans:
-        literal = plan.trigger.literal
-        if (
-            plan.trigger.operator == operator
-            and plan.trigger.kind
-            and isinstance(literal, nodes.Literal)
-            and _is_own(literal)
-        ):
+        is_goal = plan.trigger.operator == operator and plan.trigger.kind
+        literal = plan.trigger.literal if is_goal else None
+        if isinstance(literal, nodes.Literal) and _is_own(literal):
             yield plan, literal
 
 
-def _posted_in(plan: nodes.Plan) -> Iterator[nodes.Literal]:
-    for step in ByKind(plan.body, plan.subplans).of(nodes.Achieve):
-        if isinstance(step.goal, nodes.Literal):
-            yield step.goal
-
-
-def _is_for(trigger: nodes.Trigger, key: Key) -> bool:
-    return isinstance(trigger.literal, nodes.Literal) and _key(trigger.literal) == key
-
-
 def _is_own(literal: nodes.Literal) -> bool:
-    """Return whether a literal is in the default namespace, and not in a library of JaCaROS."""
-    return literal.namespace is None and (literal.span is None or literal.span.file.name[:1] != "$")
+    """Return whether a literal is in the default namespace, and in a file of the project."""
+    return literal.namespace is None and is_own(literal)
 
 
 def _is_open(program: nodes.Program, known: KnownActions) -> bool:
@@ -192,9 +161,14 @@ def never_posted(
     for plan, literal in _of_goals((plan for each in programs for plan in each.plans), "+"):
         trigger = plan.trigger
         is_test = any(item.functor == "test" for item in labelled(plan))
-        if trigger.span is None or is_test or posts.may_post(_key(literal)) or not is_project(trigger.span):
+        if (
+            trigger.span is None
+            or is_test
+            or posts.may_post(indicator_of(literal))
+            or not is_project(trigger.span)
+        ):
             continue
-        goal = f"{trigger.kind}{_text(_key(literal))}"
+        goal = f"{trigger.kind}{_text(indicator_of(literal))}"
         help = "post it, offer it to callers with `{ offer(goal, ...) }`, or remove the plan"
         yield problem("goal-never-posted", f"no agent of the project posts `{goal}`", trigger.span, help)
 
@@ -222,20 +196,23 @@ def facts_for_goals(program: nodes.Program) -> Iterator[Diagnostic]:
     facts: dict[Key, list[nodes.Literal]] = {}
     for belief in program.beliefs:
         if isinstance(belief, nodes.Literal) and _is_own(belief):
-            facts.setdefault(_key(belief), []).append(belief)
-    heads = [
-        each.trigger.literal
-        for each in program.plans
-        if (each.trigger.operator, each.trigger.kind) == ("+", "!")
-    ]
-    for key in facts.keys() & {_key(each) for each in heads if isinstance(each, nodes.Literal)}:
-        of_goal = [plan for plan in program.plans if _is_for(plan.trigger, key) and plan.trigger.kind == "!"]
+            facts.setdefault(indicator_of(belief), []).append(belief)
+    heads = [each.trigger for each in program.plans]
+    goals = {indicator_of(each.literal) for each in heads if (each.operator, each.kind) == ("+", "!")}
+    for key in facts.keys() & goals:
+        of_goal = [
+            plan
+            for plan in program.plans
+            if (plan.trigger.kind, indicator_of(plan.trigger.literal)) == ("!", key)
+        ]
         others = [plan for plan in program.plans if plan not in of_goal]
         own = ByKind(*of_goal)
         repeated = {id(step.goal) for step in own.of(nodes.Achieve)} | {
             id(each.literal) for each in own.of(nodes.Trigger)
         }
-        is_read = any(_key(each) == key and id(each) not in repeated for each in own.of(nodes.Literal))
+        is_read = any(
+            indicator_of(each) == key and id(each) not in repeated for each in own.of(nodes.Literal)
+        )
         rest = ByKind(program.beliefs, program.goals, program.offered_goals, tuple(others))
         if not is_read and Posts(rest).appears_only_as(facts[key]):
             message = f"nothing reads the belief `{_text(key)}`, and nothing posts the goal `!{_text(key)}`"
@@ -244,18 +221,18 @@ def facts_for_goals(program: nodes.Program) -> Iterator[Diagnostic]:
 
 def bypassed_plans(programs: Sequence[nodes.Program]) -> Iterator[Diagnostic]:
     """Warn of actions, if a plan for the goal of that name handles their failure, and no program posts it."""
-    bypassing: list[nodes.Literal | nodes.Variable] = []
+    bypassing: list[nodes.Literal] = []
     for program in programs:
-        handled = {_key(literal) for _, literal in _of_goals(program.plans, "+")}
-        handled &= {_key(literal) for _, literal in _of_goals(program.plans, "-")}
+        handled = {indicator_of(literal) for _, literal in _of_goals(program.plans, "+")}
+        handled &= {indicator_of(literal) for _, literal in _of_goals(program.plans, "-")}
         for plan, in_plan in program.in_plans if handled else ():
             for action in (step.action for step in in_plan.of(nodes.ExternalAction)):
-                key = _key(action) if isinstance(action, nodes.Literal) else ("", 0)
-                if key in handled and not _is_for(plan.trigger, key):
+                is_other = indicator_of(action) != indicator_of(plan.trigger.literal)
+                if isinstance(action, nodes.Literal) and indicator_of(action) in handled and is_other:
                     bypassing.append(action)
     posts = Posts(*(program.found for program in programs if bypassing))
     for action in bypassing:
-        if isinstance(action, nodes.Literal) and not posts.may_post(_key(action)):
+        if not posts.may_post(indicator_of(action)):
             name = action.functor
             message = f"`{name}` is the operation, and nothing posts `!{name}`, which handles its failure"
             yield problem("missing-mark", message, action.span, did_you_mean([f"!{name}"]))
@@ -269,14 +246,14 @@ def missing_marks(program: nodes.Program, known: KnownActions) -> Iterator[Diagn
     """
     posts = Posts(program.found)
     heads = [each.trigger.literal for each in program.plans]
-    own = {_key(head) for head in heads if isinstance(head, nodes.Literal) and _is_own(head)}
+    own = {indicator_of(head) for head in heads if isinstance(head, nodes.Literal) and _is_own(head)}
     for plan, found in program.in_plans:
         of = plan.trigger.literal.functor if isinstance(plan.trigger.literal, nodes.Literal) else ""
         for step in found.of(nodes.ExternalAction):
             action = step.action
             if not isinstance(action, nodes.Literal) or not _is_own(action) or action.functor == of:
                 continue
-            key = _key(action)
+            key = indicator_of(action)
             meant = with_mark(key, posts.handled, known)
             is_goal = meant.startswith("!") and (key not in own or not posts.may_post(key))
             if is_goal or meant[1:] in _OFTEN_MEANT:

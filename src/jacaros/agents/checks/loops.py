@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Final
 
 from jacaros.agents.checks.formulas import annotations_of, is_true
-from jacaros.agents.checks.goals import KnownActions
+from jacaros.agents.checks.goals import KnownActions, Signature, signature
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic, problem
 from jacaros.agents.language.nodes import ByKind, names_in, parts_of, walk
@@ -26,8 +26,8 @@ _ENDING: Final = frozenset(
 )
 """Internal actions by which another intention may end a loop."""
 
-_Event = tuple[str, str, int, object]
-"""Kind of an event (``!``, or empty for a belief), its name, number of arguments and namespace."""
+_Event = tuple[str, Signature]
+"""Kind of an event (``!``, or empty for a belief), and what it is about."""
 _HELP: Final = "wait in it, as in `.wait(1000)`, or end it with another plan"
 
 
@@ -51,7 +51,7 @@ def loops_without_wait(program: nodes.Program, found: ByKind, known: KnownAction
             changes = ByKind(plan.body).of(nodes.BeliefChange)
             again = quick.raising(plan, quick.plans) if _takes_all(plan) and not changes else []
             if any(isinstance(each, nodes.Achieve) and each.goal == plan.trigger.literal for each in again):
-                yield _without_wait(f"`!{own[1]}`", again[-1])
+                yield _without_wait(f"`!{own[1][1]}`", again[-1])
     event: _Event | None
     for event in reposts:
         path: list[_Event] = []
@@ -59,7 +59,7 @@ def loops_without_wait(program: nodes.Program, found: ByKind, known: KnownAction
             path.append(event)
             event = _event_of(reposts[event])
         if event is not None and event in path:
-            kind, name, *_ = event
+            kind, (_, name, _) = event
             yield _without_wait(f"`{kind or '+'}{name}`", reposts[path[-1]])
         seen.update(path)
 
@@ -73,12 +73,8 @@ def _by_event(plans: Iterable[nodes.Plan]) -> dict[_Event, list[nodes.Plan]]:
     found: dict[_Event, list[nodes.Plan]] = {}
     for plan in plans:
         if plan.trigger.operator == "+" and isinstance(plan.trigger.literal, nodes.Literal):
-            found.setdefault(_key(plan.trigger.kind, plan.trigger.literal), []).append(plan)
+            found.setdefault((plan.trigger.kind, signature(plan.trigger.literal)), []).append(plan)
     return found
-
-
-def _key(kind: str, literal: nodes.Literal) -> _Event:
-    return kind, f"{'~' * literal.negated}{literal.functor}", len(literal.arguments), literal.namespace
 
 
 def _reposts(plans: Mapping[_Event, list[nodes.Plan]], quick: "_Quick") -> dict[_Event, nodes.Step]:
@@ -112,14 +108,14 @@ def _takes_all(plan: nodes.Plan) -> bool:
 def _event_of(step: nodes.Step) -> _Event | None:
     """Return the event that a step certainly raises."""
     if isinstance(step, nodes.Achieve) and isinstance(step.goal, nodes.Literal):
-        return _key("!", step.goal)
+        return "!", signature(step.goal)
     if (
         isinstance(step, nodes.BeliefChange)
         and "+" in step.operator
         and isinstance(step.operand, nodes.Literal)
     ):
         # A belief that is there raises no event; one with another value does.
-        return _key("", step.operand) if ByKind(step.operand).of(nodes.Arithmetic) else None
+        return ("", signature(step.operand)) if ByKind(step.operand).of(nodes.Arithmetic) else None
     return None
 
 
@@ -134,8 +130,8 @@ def _ended(found: ByKind) -> set[_Event]:
         }
         goals -= ended
         ended |= goals
-        plans = [each for each in found.of(nodes.Plan) if isinstance(each.trigger.literal, nodes.Literal)]
-        roots = [each for each in plans if _key(each.trigger.kind, each.trigger.literal) in goals]  # type: ignore[arg-type]
+        plans = found.of(nodes.Plan)
+        roots = [each for each in plans if (each.trigger.kind, signature(each.trigger.literal)) in goals]
     return ended
 
 
@@ -157,16 +153,16 @@ def _taken_away(body: nodes.Body) -> Iterator[nodes.Literal]:
     """Yield the beliefs that a body deletes and does not add again."""
     changes = [(each.operator, each.operand) for each in body.steps if isinstance(each, nodes.BeliefChange)]
     added = {
-        _key("", operand) for sign, operand in changes if "+" in sign and isinstance(operand, nodes.Literal)
+        signature(operand) for sign, operand in changes if "+" in sign and isinstance(operand, nodes.Literal)
     }
     for sign, operand in changes:
-        if "+" not in sign and isinstance(operand, nodes.Literal) and _key("", operand) not in added:
+        if "+" not in sign and isinstance(operand, nodes.Literal) and signature(operand) not in added:
             yield operand
 
 
 def _answers(fact: nodes.Literal, asked: nodes.Literal) -> bool:
     """Return whether a fact answers a query with variables in place of some of its arguments."""
-    return _key("", fact) == _key("", asked) and all(
+    return signature(fact) == signature(asked) and all(
         isinstance(one, nodes.Variable) or one == other
         for one, other in zip(asked.arguments, fact.arguments, strict=True)
     )
@@ -180,8 +176,10 @@ class _Quick:
         self.plans = _by_event(program.plans)
         self._asked: dict[_Event, bool] = {}
         facts = [each for each in program.beliefs if isinstance(each, nodes.Literal)]
-        gone = {_key("", each) for body in ByKind(program.plans).of(nodes.Body) for each in _taken_away(body)}
-        self._lasting = [each for each in facts if _key("", each) not in gone]
+        gone = {
+            signature(each) for body in ByKind(program.plans).of(nodes.Body) for each in _taken_away(body)
+        }
+        self._lasting = [each for each in facts if signature(each) not in gone]
 
     def raising(self, plan: nodes.Plan, plans: Mapping[_Event, object]) -> list[nodes.Step]:
         """Return the steps of a plan that raise events with plans and that only quick steps come before."""
@@ -215,7 +213,7 @@ class _Quick:
             case nodes.For(_, body):
                 return self.are(body.steps)
             case nodes.Achieve(nodes.Literal() as goal, separate):
-                return separate or self._ends(_key("!", goal))
+                return separate or self._ends(("!", signature(goal)))
         return False
 
     def _ends(self, event: _Event) -> bool:

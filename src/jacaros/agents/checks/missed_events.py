@@ -10,13 +10,11 @@
 
 from collections.abc import Iterable, Iterator
 
-from jacaros.agents.checks.goals import KnownActions
+from jacaros.agents.checks.goals import KnownActions, Signature, signature
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic, problem
 from jacaros.agents.language.lowering import format_term
 from jacaros.agents.language.nodes import ByKind
-
-_Key = tuple[str, int, object]
 
 
 def missed_events(program: nodes.Program, found: ByKind, known: KnownActions) -> Iterator[Diagnostic]:
@@ -57,18 +55,14 @@ def _awaited(call: nodes.InternalAction) -> nodes.Literal | None:
     return None
 
 
-def _key(literal: nodes.Literal) -> _Key:
-    return f"{'~' * literal.negated}{literal.functor}", len(literal.arguments), literal.namespace
-
-
 class _Causes:
     """The steps of a program that add beliefs, and the goals that lead to them."""
 
     def __init__(self, program: nodes.Program, found: ByKind) -> None:
-        self._plans: dict[_Key, list[nodes.Plan]] = {}
+        self._plans: dict[Signature, list[nodes.Plan]] = {}
         for plan in program.plans:
             if plan.trigger.kind == "!" and isinstance(plan.trigger.literal, nodes.Literal):
-                self._plans.setdefault(_key(plan.trigger.literal), []).append(plan)
+                self._plans.setdefault(signature(plan.trigger.literal), []).append(plan)
         self._posts = found.of(nodes.Achieve)
         changes = found.of(nodes.BeliefChange)
         self._adding = [
@@ -78,34 +72,30 @@ class _Causes:
         # A belief that is the argument of an action may come in a message.
         calls = [*found.of(nodes.InternalAction), *found.of(nodes.ExternalAction), *program.beliefs]
         ours = set(map(id, written))
-        self._elsewhere = {_key(each) for each in ByKind(*calls).of(nodes.Literal) if id(each) not in ours}
+        self._elsewhere = {
+            signature(each) for each in ByKind(*calls).of(nodes.Literal) if id(each) not in ours
+        }
 
     def are_all_in(self, event: nodes.Literal, steps: Iterable[nodes.Step]) -> bool:
         """Return whether some of these steps, and nothing else, add a belief."""
-        key = _key(event)
-        adding = {id(each) for each in self._adding if each.operand is not event and _key_of(each) == key}
+        key = signature(event)
+        adding = {
+            id(each) for each in self._adding if each.operand is not event and signature(each.operand) == key
+        }
         reached = {id(each) for each in self._reached(steps) if isinstance(each, nodes.BeliefChange)}
         return bool(adding) and adding <= reached and key not in self._elsewhere
 
     def _reached(self, steps: Iterable[nodes.Step]) -> Iterator[nodes.Node]:
         """Yield the nodes of steps, and of the plans for goals that only these steps achieve."""
         found = list(ByKind(*steps).of(nodes.BeliefChange, nodes.Achieve))
-        seen: set[_Key] = set()
+        seen: set[Signature] = set()
         while found:
             node = found.pop()
             yield node
             goal = node.goal if isinstance(node, nodes.Achieve) and not node.separate else None
-            if isinstance(goal, nodes.Literal) and _key(goal) not in seen:
-                key = _key(goal)
+            if isinstance(goal, nodes.Literal) and signature(goal) not in seen:
+                key = signature(goal)
                 seen.add(key)
-                posts = [
-                    each
-                    for each in self._posts
-                    if isinstance(each.goal, nodes.Literal) and _key(each.goal) == key
-                ]
+                posts = [each for each in self._posts if signature(each.goal) == key]
                 if len(posts) == 1:
                     found += ByKind(*self._plans.get(key, ())).of(nodes.BeliefChange, nodes.Achieve)
-
-
-def _key_of(change: nodes.BeliefChange) -> _Key | None:
-    return _key(change.operand) if isinstance(change.operand, nodes.Literal) else None

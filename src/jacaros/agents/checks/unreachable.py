@@ -11,7 +11,7 @@ from typing import Final
 
 from jacaros.agents.checks.flow import is_own
 from jacaros.agents.checks.formulas import conditions, contradiction, implies, is_true
-from jacaros.agents.checks.goals import KnownActions
+from jacaros.agents.checks.goals import KnownActions, signature
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic, Span, problem
 from jacaros.agents.language.nodes import ByKind, is_ground, names_in, parts_of, rebuilt
@@ -181,8 +181,7 @@ def _renamed(context: nodes.Term | None, names: Mapping[str, nodes.Term]) -> nod
 
 
 def _event(trigger: nodes.Trigger, literal: nodes.Literal, annotations: nodes.Annotations | None) -> object:
-    kind = (trigger.operator, trigger.kind, literal.functor, len(literal.arguments))
-    return (*kind, literal.negated, literal.namespace, annotations)
+    return trigger.operator, trigger.kind, signature(literal), annotations
 
 
 def _values(literal: nodes.Literal, places: Sequence[int]) -> object:

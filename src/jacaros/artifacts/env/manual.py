@@ -30,22 +30,13 @@ def own_classes(artifact_type: type) -> list[type]:
     return [each for each in artifact_type.__mro__ if issubclass(each, Artifact) and each is not Artifact]
 
 
-def written_properties(artifact_type: type) -> Usages:
-    """Return the properties that the code of the class defines by name, the most general class first."""
-    return _written(artifact_type, ("define_property",))
-
-
-def written_signals(artifact_type: type) -> Usages:
-    """Return the signals that the code of the class sends by name, the most general class first."""
-    return _written(artifact_type, ("signal", "signal_to"))
-
-
 def usages_in(kind: type, sources: ClassSources) -> Iterator[tuple[str, str]]:
     """Yield name and usage of each property and signal where the code of one class defines, updates or sends it."""
     return _calls(sources.of(kind), tuple(_DEFINES))
 
 
-def _written(artifact_type: type, methods: tuple[str, ...]) -> Usages:
+def _written(artifact_type: type, *methods: str) -> Usages:
+    """Return what the code of the class names in these methods, the most general class first."""
     found, sources = Usages(), ClassSources()
     for each in reversed(own_classes(artifact_type)):
         for name, usage in _calls(sources.of(each), methods):
@@ -254,8 +245,8 @@ def describe(artifact_type: type[Artifact]) -> Manual:
         without_sections(inspect.cleandoc(artifact_type.__doc__ or ""), NOT_FOR_USERS),
         tuple(map(_describe, offered.inits)) or (_NO_INIT,),
         tuple(_describe(declared) for table in tables for declared in table),
-        _observables(described(artifact_type, "Properties"), written_properties(artifact_type)),
-        _observables(described(artifact_type, "Signals"), written_signals(artifact_type)),
+        _observables(described(artifact_type, "Properties"), _written(artifact_type, "define_property")),
+        _observables(described(artifact_type, "Signals"), _written(artifact_type, "signal", "signal_to")),
         tuple(artifact_type.ports),
     )
 

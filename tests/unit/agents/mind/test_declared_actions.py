@@ -3,7 +3,7 @@
 import pytest
 from recording_host import mind
 
-from jacaros.agents.checks.flow import flow_of
+from jacaros.agents.checks.flow import flows_of
 from jacaros.agents.language.loader import load_program
 from jacaros.agents.mind.actions import internal_action
 from jacaros.agents.mind.actions.internal_action import STANDARD, InternalAction
@@ -44,4 +44,4 @@ def test_waits_failures_and_the_check_see_the_condition():
     host.run()
     assert any("stops at `T > 5` with T=1" in logged for _, logged in host.logged)
     program, _ = load_program("robot.asl", "+!g <- .total(X, zone(X), T); .print(T).", actions=STANDARD)
-    assert {reader.key[0] for reader in flow_of(program, STANDARD).readers} == {"zone"}
+    assert {reader.key[0] for reader in flows_of([program], STANDARD)[0].readers} == {"zone"}

@@ -8,7 +8,7 @@ operations at run time, and an agent architecture may run actions itself.
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence, Set
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from jacaros.agents.body.body import keys
 from jacaros.agents.checks.annotations import needs_of
 from jacaros.agents.checks.flow import is_own
+from jacaros.agents.checks.formulas import Key, indicator_of
 from jacaros.agents.checks.goals import KnownActions
-from jacaros.agents.checks.handlers import Key, bypassed_plans, handled_in, with_mark
+from jacaros.agents.checks.handlers import bypassed_plans, handled_in, with_mark
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.agents.language.nodes import UNDECLARED, nodes_in, walk
@@ -74,7 +75,7 @@ def _unknown_operations(
         if agent.agent_class:
             continue
         handled = handled_in(program.found)
-        yield from unbound_arguments([plan for plan in program.plans if not _is_of_library(plan)], types)
+        yield from unbound_arguments(filter(is_own, program.plans), types)
         for step in program.found.of(nodes.ExternalAction):
             if isinstance(step.action, nodes.Literal):
                 yield from offered.check(step.action, handled)
@@ -234,17 +235,12 @@ class _NamedType(NamedTuple):
     """Whether it is an argument of an action or of a goal of a library, which is certainly a type."""
 
 
-@dataclass(frozen=True)
-class NamedTypes:
-    """The types that a program creates artifacts of.
-
-    Attributes:
-        found: by the terms that name them.
-        certain: whether it creates no others at run time.
-    """
+class NamedTypes(NamedTuple):
+    """The types that a program creates artifacts of."""
 
     found: Sequence[_NamedType]
     certain: bool
+    """Whether it creates no others at run time."""
 
 
 def unknown_types(
@@ -293,9 +289,9 @@ def named_types(program: nodes.Program) -> NamedTypes:
     posted: set[Key] = set()
     for plan, literals in _uses(program):
         for literal in literals:
-            uses.setdefault(_key(literal), []).append((literal, plan))
+            uses.setdefault(indicator_of(literal), []).append((literal, plan))
         if not _is_of_library(plan):
-            posted.update(map(_key, literals))
+            posted.update(map(indicator_of, literals))
     certain = not any(name in _OPEN_WORLD for name, _ in uses)
     named: list[_NamedType] = []
     places = list(_MAKING)
@@ -306,7 +302,7 @@ def named_types(program: nodes.Program) -> NamedTypes:
             wanted = literal.arguments[place.argument]
             name = type_of(wanted)
             if name is not None:
-                if plan is None or not _is_of_library(plan) or _key(plan.trigger.literal) in posted:
+                if plan is None or not _is_of_library(plan) or indicator_of(plan.trigger.literal) in posted:
                     named.append(_NamedType(name, wanted, place.of_library))
                 continue
             given = _given_by_goal(wanted, plan)
@@ -321,10 +317,6 @@ def type_of(wanted: nodes.Term) -> str | None:
     if isinstance(wanted, nodes.String):
         return wanted.value
     return wanted.functor if isinstance(wanted, nodes.Literal) and not wanted.arguments else None
-
-
-def _key(literal: nodes.Literal | nodes.Variable) -> Key:
-    return (literal.functor, len(literal.arguments)) if isinstance(literal, nodes.Literal) else ("", 0)
 
 
 def _uses(program: nodes.Program) -> Iterator[tuple[nodes.Plan | None, list[nodes.Literal]]]:
@@ -344,9 +336,9 @@ def _given_by_goal(wanted: nodes.Term, plan: nodes.Plan | None) -> _Place | None
         return None
     for number, argument in enumerate(goal.arguments):
         if isinstance(argument, nodes.Variable) and argument.name == wanted.name:
-            return _Place(*_key(goal), number, _is_of_library(plan))
+            return _Place(*indicator_of(goal), number, _is_of_library(plan))
     return None
 
 
 def _is_of_library(plan: nodes.Plan | None) -> bool:
-    return plan is not None and plan.span is not None and not is_own(plan)
+    return plan is not None and not is_own(plan)

@@ -26,7 +26,8 @@ from jacaros.agents.checks.beliefs import (
     unawaited,
     unmet_goals,
 )
-from jacaros.agents.checks.flow import ANY, Adder, Flow, Key, ProgramFlow, Reader, flows_of, is_own, source_of
+from jacaros.agents.checks.flow import ANY, Adder, Flow, ProgramFlow, Reader, flows_of, is_own, source_of
+from jacaros.agents.checks.formulas import Key
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic, problem
 from jacaros.agents.language.lowering import format_term

@@ -9,6 +9,7 @@ from itertools import chain
 from typing import TYPE_CHECKING, Final
 
 from jacaros.agents.checks.flow import ProgramFlow, Reader, is_own, key_of
+from jacaros.agents.checks.formulas import indicator_of
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.agents.language.lowering import format_term
@@ -136,8 +137,8 @@ class _Focus:
             self._by_name.setdefault(artifact.name, set()).add(artifact.type_name)
         for _, program in programs:
             own = [(plan, in_plan) for plan, in_plan in program.in_plans if is_own(plan.trigger.literal)]
-            posted = {_functor(step.goal) for _, in_plan in own for step in in_plan.of(nodes.Achieve)}
-            called = [each for each in program.in_plans if _functor(each[0].trigger.literal) in posted]
+            posted = {indicator_of(step.goal)[0] for _, in_plan in own for step in in_plan.of(nodes.Achieve)}
+            called = [each for each in program.in_plans if indicator_of(each[0].trigger.literal)[0] in posted]
             for name, kind, _ in chain.from_iterable(_made(in_plan) for _, in_plan in (*own, *called)):
                 if kind:
                     self._by_name.setdefault(name, set()).add(kind)
@@ -254,10 +255,6 @@ class _Focus:
                     found.append(self._meant(head.arguments[-1], in_answer, rest))
         known = [each for each in found if each is not None]
         return set().union(*known) if known and len(known) == len(found) else None
-
-
-def _functor(literal: nodes.Node) -> str:
-    return literal.functor if isinstance(literal, nodes.Literal) else ""
 
 
 def _tests(found: ByKind) -> list[nodes.Literal]:
