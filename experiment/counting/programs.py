@@ -18,12 +18,12 @@ from jacaros.robots.registry import type_finder
 from jacaros.robots.world.files.faults import fault_file_problems, is_fault_file
 from jacaros.robots.world.files.world import is_world, shipped_worlds, world_problems
 from jacaros.runtime.files.python_modules import ProjectModules
-from jacaros.runtime.files.texts import is_file, suggestion
+from jacaros.runtime.files.texts import files_below, is_file, suggestion
 from jacaros.runtime.files.yaml import plain_values
 from jacaros.runtime.mas.agents.programs import TEST_LIBRARY, Programs, SourcePath, source_folders, text_of
 from jacaros.runtime.mas.agents.python_code import PythonCode
 from jacaros.runtime.mas.checks.artifacts import named_types
-from jacaros.runtime.mas.checks.files import MAPPINGS, PROJECTS, files_below
+from jacaros.runtime.mas.checks.files import MAPPINGS, PROJECTS
 from jacaros.runtime.mas.deployment import Deployment, ProjectError
 from jacaros.runtime.mas.mappings import diagnostics_of
 from jacaros.runtime.mas.project.cursor import ProjectCursor

@@ -27,9 +27,8 @@ from jacaros.runtime.cli.usage import (
 )
 from jacaros.runtime.errors import InternalError
 from jacaros.runtime.files import texts
-from jacaros.runtime.files.texts import is_file, printable, suggestion
+from jacaros.runtime.files.texts import files_below, is_file, printable, suggestion
 from jacaros.runtime.mas.agents.programs import text_of
-from jacaros.runtime.mas.checks.files import Findings, check_files, files_below
 from jacaros.runtime.output import beneath
 
 _KINDS = (".asl", ".mas2j", ".jcm", ".py", ".yaml", ".yml")
@@ -78,6 +77,8 @@ def check(
 
     Python code of the project is read, not run, unless you give --import. The exit code is 1 if there is an error.
     """  # fmt: skip
+    from jacaros.runtime.mas.checks.files import check_files  # here: `fmt` reads no projects
+
     unknown = [code for code in ignore if code not in LEVELS]
     if unknown:
         raise usage_error(
@@ -92,9 +93,9 @@ def check(
         [each for each in findings.diagnostics if each.severity == "error" or each.code not in ignore]
     )
     if style == "text":
-        report(findings)
+        report(findings.diagnostics, len(findings.files))
     else:
-        click.echo(as_json(findings))
+        click.echo(as_json(findings.diagnostics, len(findings.files)))
     counts = Counter(each.severity for each in findings.diagnostics)
     return 1 if counts["error"] or (strict and counts["warning"]) else 0
 
@@ -108,16 +109,16 @@ def _supported(files: Sequence[Path]) -> Sequence[Path]:
     return [file for file in files if file not in foreign]
 
 
-def report(findings: Findings) -> None:
+def report(diagnostics: Sequence[Diagnostic], files: int) -> None:
     """Print the diagnostics, and their number on the standard error output."""
     coloured = has_colours()
-    for diagnostic in findings.diagnostics:
+    for diagnostic in diagnostics:
         if coloured:  # its text is escaped
             click.echo(_coloured(diagnostic), beneath(sys.stdout), color=True)
         else:
             click.echo(diagnostic.render(with_code=True))
         click.echo()
-    click.echo(_summary(findings.diagnostics, len(findings.files)), err=True)
+    click.echo(_summary(diagnostics, files), err=True)
 
 
 def _coloured(diagnostic: Diagnostic) -> str:
@@ -134,10 +135,10 @@ def _summary(diagnostics: Sequence[Diagnostic], files: int) -> str:
     return f"{', '.join(found) or 'nothing wrong'} in {counted(files, 'file')}"
 
 
-def as_json(findings: Findings) -> str:
+def as_json(diagnostics: Sequence[Diagnostic], files: int) -> str:
     """Return the findings as one JSON object; lines and columns count from 1, and the end column is exclusive."""
-    found = [_plain(diagnostic) for diagnostic in findings.diagnostics]
-    document = {"version": 1, "files": len(findings.files), "diagnostics": found}
+    found = [_plain(diagnostic) for diagnostic in diagnostics]
+    document = {"version": 1, "files": files, "diagnostics": found}
     return json.dumps(document, indent=2, ensure_ascii=False)
 
 

@@ -3,7 +3,7 @@
 import os
 import re
 import stat
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from heapq import nlargest
 from itertools import islice
 from pathlib import Path
@@ -12,10 +12,22 @@ from typing import Final
 LARGEST: Final = 64 * 2**20
 """Maximum number of bytes of a program, project, mapping, world or parameter file."""
 _FOLDER: Final = "it is a directory"
+_SKIPPED: Final = frozenset({"__pycache__", "node_modules", "build", "dist"})
 
 
 class UnusableFile(OSError):
     """A file that exists but cannot be used; ``str()`` says why."""
+
+
+def files_below(folder: Path, suffixes: Sequence[str]) -> Iterator[Path]:
+    """Return the files of these kinds in a folder and its subfolders, without hidden and generated ones, sorted."""
+    for path in sorted(folder.iterdir()):
+        if path.name.startswith(".") or path.name in _SKIPPED:
+            continue
+        if path.is_dir():
+            yield from files_below(path, suffixes)
+        elif path.suffix in suffixes:
+            yield path
 
 
 def is_file(path: Path) -> bool:

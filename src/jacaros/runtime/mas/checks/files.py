@@ -16,8 +16,9 @@ from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import AslError, Diagnostic, SourceFile
 from jacaros.agents.language.loader import new_names, read_program
 from jacaros.agents.mind.actions.internal_action import STANDARD
+from jacaros.robots.registry import type_finder
 from jacaros.runtime.files.python_modules import ModuleUnreadable, ProjectModules
-from jacaros.runtime.files.texts import file_text, is_file
+from jacaros.runtime.files.texts import file_text, files_below, is_file
 from jacaros.runtime.files.yaml import Problem
 from jacaros.runtime.mas.agents.lifecycle import check_classes
 from jacaros.runtime.mas.agents.programs import (
@@ -29,26 +30,30 @@ from jacaros.runtime.mas.agents.programs import (
     with_declared,
 )
 from jacaros.runtime.mas.agents.python_code import PythonCode
+from jacaros.runtime.mas.checks.artifacts import (
+    NamedTypes,
+    check_artifacts,
+    is_wrong_mapping,
+    made_types,
+    named_types,
+    operations_as_goals,
+    unknown_types,
+)
+from jacaros.runtime.mas.checks.beliefs import Surroundings, Whole, check_beliefs
+from jacaros.runtime.mas.checks.focusing import check_focus
+from jacaros.runtime.mas.checks.observables import Observables
 from jacaros.runtime.mas.deployment import AgentSpec, Deployment, ProjectError
+from jacaros.runtime.mas.environment import types_of
 from jacaros.runtime.mas.project.reading import read_project
 
 if TYPE_CHECKING:
     from jacaros.artifacts.env.artifact import Artifact
-    from jacaros.runtime.mas.checks.artifacts import FindType, NamedTypes
-    from jacaros.runtime.mas.checks.beliefs import Whole
-    from jacaros.runtime.mas.checks.observables import Observables
+    from jacaros.runtime.mas.checks.artifacts import FindType
 
 PROJECTS: Final = (".mas2j", ".jcm")
 MAPPINGS: Final = (".yaml", ".yml")
 _BUILDS: Final = frozenset({"makeArtifact", "linkWorkspace", "mountWorkspace", "tellHow", "create_agent"})
 """Words in the code of a Python agent that may add artifacts, or plans to other agents."""
-_SKIPPED: Final = frozenset({"__pycache__", "node_modules", "build", "dist"})
-
-
-def _observables() -> "Observables":
-    from jacaros.runtime.mas.checks.observables import Observables  # here: a run loads no artifacts for it
-
-    return Observables()
 
 
 @dataclass
@@ -65,7 +70,7 @@ class Findings:
     diagnostics: list[Diagnostic] = field(default_factory=list)
     files: set[Path] = field(default_factory=set)
     unseen: set[Path] | None = field(default_factory=set)
-    observables: "Observables" = field(default_factory=_observables)
+    observables: Observables = field(default_factory=Observables)
 
     def apart(self) -> "Findings":
         """Return the empty findings of a further project of the same run."""
@@ -110,17 +115,6 @@ def _not_imported(file: Path) -> Diagnostic:
         "run the Python code of the project with --import to check them",
         "not-imported",
     )
-
-
-def files_below(folder: Path, suffixes: Sequence[str]) -> Iterator[Path]:
-    """Return the files of these kinds in a folder and its subfolders, without hidden and generated ones, sorted."""
-    for path in sorted(folder.iterdir()):
-        if path.name.startswith(".") or path.name in _SKIPPED:
-            continue
-        if path.is_dir():
-            yield from files_below(path, suffixes)
-        elif path.suffix in suffixes:
-            yield path
 
 
 def _check_folder(folder: Path, findings: Findings) -> None:
@@ -249,8 +243,6 @@ class _Checked:
 
     @cached_property
     def _find_type(self) -> "FindType":
-        from jacaros.robots.registry import type_finder  # here: see `of_artifacts`
-
         return type_finder(self._modules)
 
     def check_classes(self) -> None:
@@ -330,16 +322,6 @@ class _Checked:
 
     def of_artifacts(self, is_known: bool = True) -> list[Diagnostic]:
         """Return the errors in the artifacts of a project and, if all programs are known, in what agents do with them."""
-        # Imported on demand: programs without artifacts do not need them.
-        from jacaros.runtime.mas.checks.artifacts import (
-            check_artifacts,
-            is_wrong_mapping,
-            made_types,
-            operations_as_goals,
-            unknown_types,
-        )
-        from jacaros.runtime.mas.environment import types_of
-
         names = {artifact.type_name for each in self.deployment.workspaces for artifact in each.artifacts}
         wrong = {name for name in names if is_wrong_mapping(name, self._folders)}
         artifacts = [
@@ -349,32 +331,28 @@ class _Checked:
             if artifact.type_name not in wrong
         ]
         try:
-            find_type = self._find_type
-            types_of(artifacts, find_type)
+            types_of(artifacts, self._find_type)
         except ModuleUnreadable as error:
             return [Diagnostic("error", str(error), code="wrong-project")]
         except ProjectError as error:
             return list(map(_of_project, error.diagnostics))
-        programs = self.programs if is_known else []
-        types = self._made_types if is_known else made_types(self.deployment, (), find_type)
+        found: list[Diagnostic] = []
+        types = self._made_types if is_known else None
         if is_known:
             self._findings.diagnostics[:] = map(operations_as_goals(types or ()), self._findings.diagnostics)
-        found = list(unknown_types(self.named_types if is_known else (), self._folders, find_type))
-        if types is not None:
-            found += check_artifacts(programs, types, self._findings.observables)
-        if types is None or not is_known:
+            found += unknown_types(self.named_types, self._folders, self._find_type)
+        if types is None:
             known = KnownActions(STANDARD)
             return [*found, *(each for _, program in self.programs for each in missing_marks(program, known))]
-        return [*found, *self._of_focus(find_type, types)]
+        found += check_artifacts(self.programs, types, self._findings.observables)
+        return [*found, *self._of_focus(types)]
 
-    def _of_focus(self, find_type: "FindType", types: Sequence[type]) -> list[Diagnostic]:
-        from jacaros.runtime.mas.checks.focusing import check_focus  # here: see `of_artifacts`
-
+    def _of_focus(self, types: Sequence[type]) -> list[Diagnostic]:
+        # Plans that other programs include, and that those focus for.
         is_part = not self.deployment.agents and not any(program.goals for _, program in self.programs)
-        if (
-            not types or self.deployment.ignored or is_part
-        ):  # plans that other programs include, and that those focus for
+        if not types or self.deployment.ignored or is_part:
             return []
+        find_type = self._find_type
 
         @cache
         def properties(kind: str) -> Set[str] | None:
@@ -422,8 +400,6 @@ class _Checked:
             is_lone: there is only one program, which may be run with mapping files that are not given.
             is_partial: other agents are written in Python.
         """
-        from jacaros.runtime.mas.checks.beliefs import Surroundings, check_beliefs  # here: see `of_artifacts`
-
         if any(agent.agent_class for agent, _ in self.programs):
             return
         # The working folder may be any, with any words in its files.
@@ -433,31 +409,25 @@ class _Checked:
         self._findings.diagnostics += check_beliefs(self._whole, around)
 
     @cached_property
-    def _whole(self) -> "Whole":
+    def _whole(self) -> Whole:
         """The project as the check of beliefs sees it. Asked for when all programs are read."""
-        from jacaros.runtime.mas.checks.beliefs import Whole  # here: see `of_artifacts`
-
         programs = [program for _, program in self.programs]
         return Whole(programs, self._made_types, self._findings.observables)
 
     @cached_property
-    def named_types(self) -> "list[NamedTypes]":
+    def named_types(self) -> list[NamedTypes]:
         """The artifact types that each program names. Asked for when all programs are read."""
-        from jacaros.runtime.mas.checks.artifacts import named_types  # here: see `of_artifacts`
-
         return [named_types(program) for _, program in self.programs]
 
     @cached_property
     def _made_types(self) -> "list[type[Artifact]] | None":
         """The types of all artifacts; None if they are not known. Asked for when all programs are read."""
-        from jacaros.runtime.mas.checks.artifacts import made_types  # here: see `of_artifacts`
-
         try:
             return made_types(self.deployment, self.named_types, self._find_type)
         except ModuleUnreadable:  # reported with the artifacts
             return None
 
-    def _others(self) -> "list[Whole] | None":
+    def _others(self) -> list[Whole] | None:
         """Return the other projects that run these programs; None if one of them is not known."""
         found: list[Whole] = []
         # Under the same path, a program counts as the same one.
