@@ -1,6 +1,6 @@
 """Judge whether parcels came from the hallway to their rooms, and whether the robot had the battery for it.
 
-Judged from the ground truth and from what clients were told: the goals as the HTTP door lists them.
+Judged from the ground truth and from what clients hear: the goals as the HTTP door lists them.
 """
 
 import json

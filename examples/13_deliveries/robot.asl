@@ -10,7 +10,7 @@
 { offer(belief, battery(level(integer(0, 100))), doc("The charge, in percent.")) }
 { offer(question, needs(room([living_room, kitchen, bathroom]), percent(out(integer))),
         doc("The battery that a delivery to a room needs, in percent.")) }
-{ offer(tell, closed(room([living_room, kitchen, bathroom])), doc("Nobody may enter this room.")) }
+{ offer(tell, closed(room([living_room, kitchen, bathroom])), doc("The robot must not enter this room.")) }
 { offer(event, delivered(parcel(string), room(atom)), doc("A parcel is at its room.")) }
 
 /* What the agent knows */

@@ -40,7 +40,7 @@ def bob(graph: Any, left: Any, right: Any, own_name: str) -> Iterator[str]:
     for action in actions:
         graph.wait_until(lambda a=action: left.action_ready(a, ACHIEVE), "the action is found")
     yield name
-    # Behind a bridge to ROS 1, forty actions that nobody needs any more make the others slow.
+    # Behind a bridge to ROS 1, forty actions that are no longer needed make the others slow.
     right.close_door(name)
     for action in actions:
         left.close_action_client(action, ACHIEVE)

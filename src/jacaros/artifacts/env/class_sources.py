@@ -19,7 +19,7 @@ class ClassSources:
         self._of_file = cache(_of_file)
 
     def of(self, kind: type) -> ast.ClassDef | None:
-        """Return the code of a class; None if there is none, because the class was made at run time."""
+        """Return the code of a class; None for a class that was made at run time."""
         try:
             file = inspect.getsourcefile(kind)
         except (OSError, TypeError):

@@ -106,7 +106,7 @@ class RequestedService:
             log(f"serve: the token of an operator is {door.token}", "info")
         if Hosts(host).exposed and self.tls_cert is None:
             log(
-                f"warning: whoever reads the traffic to {host} can use its tokens; the connection is not encrypted\n"
+                f"warning: the connection is not encrypted: others who read the traffic to {host} can use its tokens\n"
                 "  = help: add --tls-cert FILE --tls-key FILE",
                 "warning",
             )

@@ -94,7 +94,7 @@ class Client:
         return self._tools
 
     async def tool(self, name: str) -> OfferedTool | None:
-        """Return a tool; None if there is none of this name."""
+        """Return the tool with a name, or None."""
         if name not in self._tools:
             await self.tools()
         return self._tools.get(name)
