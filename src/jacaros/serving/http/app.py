@@ -315,7 +315,7 @@ async def _left(request: Request) -> None:
 
 
 def _json(data: Mapping[str, Any], status: int = 200, headers: Mapping[str, str] | None = None) -> Response:
-    return Response(encoded(data), status, {**HEADERS, **(headers or {})}, "application/json")
+    return Response(f"{encoded(data)}\n", status, {**HEADERS, **(headers or {})}, "application/json")
 
 
 def _wait(request: Request) -> float:

@@ -55,7 +55,7 @@ def problem(code: str, detail: str, reasons: Sequence[str] = (), **more: Any) ->
         "reasons": list(reasons),
         **more,
     }
-    return Response(json.dumps(document), status, {**HEADERS, **_HEADERS.get(code, {})}, MEDIA_TYPE)
+    return Response(f"{json.dumps(document)}\n", status, {**HEADERS, **_HEADERS.get(code, {})}, MEDIA_TYPE)
 
 
 def of_error(error: RequestError) -> Response:
