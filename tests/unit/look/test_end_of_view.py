@@ -34,7 +34,7 @@ def run(tmp_path: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
 async def test_a_page_receives_the_end_of_the_run(run: tuple[subprocess.Popen[str], str]) -> None:
     process, address = run
     async with live_page(address) as page:
-        await page.done("belief", agent="waiter", op="+", text="found(key)")
+        await page.done("console", agent="waiter", text="+found(key)")
         await page.event("ended", code=3)
         assert "bye" in [each["text"] for each in page.of("text")]
     assert await asyncio.to_thread(process.wait, PATIENCE) == 3

@@ -66,26 +66,26 @@ def commanding(test: Callable[[LivePage], Awaitable[None]], **options: str) -> N
 @played(commanding)
 async def test_a_belief_is_added_and_removed(page) -> None:
     bob = page.mas.agent("bob")
-    await page.done("belief", agent="bob", op="+", text="found(key)")
+    await page.done("console", agent="bob", text="+found(key)")
     assert bob.believes("found(key)")
     await page.event("intervention", what="page:operator: bob: +found(key)")
     await bob.until("not .intend(wait)")
-    await page.done("belief", agent="bob", op="-", text="found(key)")
+    await page.done("console", agent="bob", text="-found(key)")
     assert not bob.believes("found(key)")
-    assert "does not believe" in await page.refused("belief", agent="bob", op="-", text="found(key)")
+    assert "does not believe" in await page.refused("console", agent="bob", text="-found(key)")
 
 
 @played(commanding)
 async def test_a_goal_is_posted_and_dropped(page) -> None:
     bob = page.mas.agent("bob")
-    await page.done("goal", agent="bob", op="post", text="go(dock)")
+    await page.done("console", agent="bob", text="!go(dock)")
     await bob.until("at(dock)", timeout=5)
     await page.event("goal", agent="bob", goal="!go(dock)", state="achieved")
-    await page.done("goal", agent="bob", op="post", text="!never")
+    await page.done("console", agent="bob", text="!never")
     await bob.until(".intend(never)", timeout=5)
-    await page.done("goal", agent="bob", op="drop", text="never")
+    await page.done("console", agent="bob", text="-!never")
     assert not bob.believes(".intend(never)")
-    assert "does not pursue" in await page.refused("goal", agent="bob", op="drop", text="never")
+    assert "does not pursue" in await page.refused("console", agent="bob", text="-!never")
 
 
 @played(commanding)
@@ -130,7 +130,7 @@ async def test_the_answer_to_a_question_of_the_page_is_recorded(page) -> None:
 @played(commanding)
 async def test_the_console_answers(page, line: str, result: str) -> None:
     assert await page.done("console", agent="bob", text=line) == result
-    await page.done("belief", agent="bob", op="+", text="last")
+    await page.done("console", agent="bob", text="+last")
     await page.event("intervention", what="page:operator: bob: +last")
     noted = [each["data"]["what"] for each in page.records if each.get("event") == "intervention"]
     assert noted == ([] if line.startswith("?") else [f"page:operator: bob: {line}"]) + [
@@ -195,13 +195,13 @@ async def test_functions_of_a_project_answer_no_questions(tmp_path: Path) -> Non
 async def test_an_endless_question_is_refused(page, line: str) -> None:
     why = await page.refused("console", agent="bob", text=line)
     assert "the question takes longer than 0.1 s" in why or "the search takes more than 10000" in why
-    await page.done("goal", agent="bob", op="post", text="go(hall)")
+    await page.done("console", agent="bob", text="!go(hall)")
     await page.mas.agent("bob").until("at(hall)", timeout=5)
 
 
 @played(commanding)
 async def test_a_text_of_a_command_has_a_largest_length(page) -> None:
-    for name, text, more in (("console", "?ready", {}), ("goal", "go(hall)", {"op": "post"})):
+    for name, text, more in (("console", "?ready", {}), ("message", "go(hall)", {"performative": "achieve"})):
         await page.done(name, agent="bob", text=text.ljust(2000), **more)
         why = await page.refused(name, agent="bob", text=text.ljust(2001), **more)
         assert why == "Expected `str` of length <= 2000 - at `$.text`"
@@ -254,10 +254,10 @@ async def test_a_question_to_a_person_is_answered(page) -> None:
         ({"do": "nothing"}, "unknown command here: `nothing`"),
         ({}, "unknown command here"),
         ({"do": ["x"]}, "unknown command here"),
-        ({"do": "belief"}, "Object missing required field `agent`"),
-        ({"do": "belief", "agent": "eve", "text": "x", "op": "+"}, "unknown agent: `eve`"),
-        ({"do": "belief", "agent": 3}, "Expected `str`, got `int` - at `$.agent`"),
-        ({"do": "belief", "agent": "bob", "text": "x", "op": "*"}, "`op` must be one of +, -"),
+        ({"do": "console"}, "Object missing required field `agent`"),
+        ({"do": "console", "agent": "eve", "text": "+x"}, "unknown agent: `eve`"),
+        ({"do": "console", "agent": 3}, "Expected `str`, got `int` - at `$.agent`"),
+        ({"do": "breakpoint", "at": {}, "op": "*"}, "`op` must be one of add, remove"),
     ],
 )
 @played(commanding)
@@ -269,7 +269,7 @@ async def test_incomplete_commands_are_refused(page, command: dict[str, object],
 
 @played(commanding)
 async def test_only_available_commands_are_offered(page) -> None:
-    assert {"answer", "belief", "console", "goal", "message", "operate"} <= set(page.hello["can"])
+    assert {"answer", "console", "message", "operate"} <= set(page.hello["can"])
     assert not {"move_robot", "door", "obstacle", "person", "battery", "fault"} & set(page.hello["can"])
 
 
@@ -353,7 +353,7 @@ async def test_a_run_is_paused_stepped_and_continued(clock: str) -> None:
         counted = await page.done("console", agent="bob", text="?counted(N)")
         await page.done("move_robot", robot="turtlebot", x=2, y=1)
         await page.until(lambda: any(each["robots"][0][:2] == [2, 1] for each in page.of("frame")))
-        await page.done("belief", agent="bob", op="+", text="found(key)")
+        await page.done("console", agent="bob", text="+found(key)")
         assert await page.done("console", agent="bob", text="?counted(N)") == counted
         await page.done("step", what="step", agent="bob")
         await page.event("debug", state="paused", why="step")
@@ -367,7 +367,7 @@ async def test_a_run_is_paused_stepped_and_continued(clock: str) -> None:
 async def test_a_breakpoint_stops_the_run(page) -> None:
     at = {"event": "+!go(_)"}
     assert await page.done("breakpoint", op="add", at=at) == ["+!go(_)"]
-    await page.done("goal", agent="bob", op="post", text="go(dock)")
+    await page.done("console", agent="bob", text="!go(dock)")
     assert (await page.event("debug", state="paused"))["why"] == "breakpoint +!go(_)"
     assert not page.mas.agent("bob").believes("at(_)")
     assert await page.done("breakpoint", op="remove", at=at) == []
@@ -393,7 +393,7 @@ async def test_a_changed_program_is_reloaded(tmp_path: Path) -> None:
     async with viewed(Mas(program)) as page:
         program.write_text("+!say <- +said(new).")
         assert "bob" in str(await page.done("reload"))
-        await page.done("goal", agent="bob", op="post", text="say")
+        await page.done("console", agent="bob", text="!say")
         await page.mas.agent("bob").until("said(new)", timeout=5)
         program.write_text("+!say <- (")
         assert await page.refused("reload")
@@ -412,7 +412,7 @@ async def test_the_run_continues_while_a_question_about_it_is_answered(page, mon
     monkeypatch.setattr(service, "explain", explained)
     answer = asyncio.create_task(page.done("why", question="waiting"))
     await asyncio.to_thread(asked.wait, 20)
-    await page.done("goal", agent="bob", op="post", text="go(hall)")
+    await page.done("console", agent="bob", text="!go(hall)")
     await page.mas.agent("bob").until("at(hall)", timeout=5)
     assert not answer.done()
     may_answer.set()
@@ -421,7 +421,7 @@ async def test_the_run_continues_while_a_question_about_it_is_answered(page, mon
 
 @played(commanding)
 async def test_a_question_is_answered(page) -> None:
-    await page.done("goal", agent="bob", op="post", text="go(dock)")
+    await page.done("console", agent="bob", text="!go(dock)")
     await page.mas.agent("bob").until("at(dock)", timeout=5)
     assert "!go(dock) was achieved" in str(await page.done("why", question="!go(dock)"))
     answer = str(await page.done("why", question="did it achieve go(dock)?"))

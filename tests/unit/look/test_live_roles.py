@@ -31,8 +31,6 @@ doors: [{name: gate, segment: [[1, -3], [1, -2]], open: false}]
 robots: [{name: turtlebot, pose: {x: -1, y: 0, yaw_degrees: 0}}]
 """
 COMMANDS = {
-    "belief": {"agent": "bob", "op": "-", "text": "closed(office)"},
-    "goal": {"agent": "bob", "op": "post", "text": "hidden"},
     "message": {"agent": "bob", "performative": "achieve", "text": "hidden"},
     "console": {"agent": "bob", "text": "!hidden"},
     "operate": {"artifact": "operator", "text": "ask(\"Who?\", [], X)"},

@@ -45,14 +45,6 @@ async def _answer(session: Session, question: Text, given: str | int) -> None:
     await session.answer(question, given)
 
 
-def _belief(session: Session, agent: Text, text: Text, op: Literal["+", "-"]) -> None:
-    session.console(agent, f"{op}{text}")
-
-
-def _goal(session: Session, agent: Text, text: Text, op: Literal["post", "drop"]) -> None:
-    session.console(agent, f"{'!' if op == 'post' else '-!'}{text.lstrip('!')}")
-
-
 def _message(session: Session, agent: Text, text: Text, performative: Performative) -> str:
     session.send(agent, performative, text)
     return "sent; answers appear in Messages" if performative.startswith("ask") else "sent"
@@ -64,9 +56,4 @@ def _console(session: Session, agent: Text, text: Text) -> str:
 
 FOR_OBSERVERS: Mapping[str, Command] = {"why": _why, "story": _story, "offers": _offers, "goals": _goals}
 FOR_USERS: Mapping[str, Command] = {"achieve": _achieve, "cancel": _cancel, "answer": _answer}
-FOR_OPERATORS: Mapping[str, Command] = {
-    "belief": _belief,
-    "goal": _goal,
-    "message": _message,
-    "console": _console,
-}
+FOR_OPERATORS: Mapping[str, Command] = {"message": _message, "console": _console}

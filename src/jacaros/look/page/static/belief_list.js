@@ -25,7 +25,7 @@ export class BeliefList {
 
   stamp(mind, t) {
     const recent = mind.beliefs.between(t - 2, t);
-    return `${mind.beliefs.countAt(t)} ${recent.length} ${this.filter.value} ${this.context.commands.can.has("belief")} ${this.context.curves.stamp}`;
+    return `${mind.beliefs.countAt(t)} ${recent.length} ${this.filter.value} ${this.context.commands.can.has("console")} ${this.context.curves.stamp}`;
   }
 
   nodes(mind, t) {
@@ -70,8 +70,8 @@ export class BeliefList {
     const item = element("li", kind, keyed(key, row));
     const { commands, actions, curves } = this.context, plot = kind !== "gone" && curves.button(beliefKeys(mind.name, text), main);
     if (plot) item.append(keyed(`${key} plot`, plot));
-    if (commands.can.has("belief") && kind !== "gone") {
-      item.append(keyed(`${key} remove`, actions.button("×", `Remove ${main}`, () => commands.send("belief", { agent: mind.name, op: "-", text }))));
+    if (commands.can.has("console") && kind !== "gone") {
+      item.append(keyed(`${key} remove`, actions.button("×", `Remove ${main}`, () => commands.send("console", { agent: mind.name, text: `-${text}` }))));
     }
     return item;
   }

@@ -52,8 +52,8 @@ export class IntentionCards {
     const feet = element("footer", "", whyButton(this.context, { agent: mind.name, intention: id, cause: cause || undefined }, key));
     if (urgency) feet.append(element("span", "urgency", `urgency ${urgency}`));
     const { commands } = this.context;
-    if (commands.can.has("goal") && goal?.startsWith("!")) {
-      feet.append(keyed(`${key} drop`, this.context.actions.button("Drop", `Drop ${goal}`, () => commands.send("goal", { agent: mind.name, op: "drop", text: goal }))));
+    if (commands.can.has("console") && goal?.startsWith("!")) {
+      feet.append(keyed(`${key} drop`, this.context.actions.button("Drop", `Drop ${goal}`, () => commands.send("console", { agent: mind.name, text: `-${goal}` }))));
     }
     return feet;
   }
