@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import logging
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import Any
@@ -82,6 +83,8 @@ class McpServer:
             on_subscriptions_listen=self._listen,
         )
         self.server.middleware.clear()  # the run has its own recording
+        # What strangers send does not belong in the output of a run; defects do.
+        logging.getLogger("mcp").setLevel(logging.ERROR)
 
     # ---- tools
 

@@ -1,17 +1,19 @@
 """MCP over the standard input and output of the process, which then belong to the client."""
 
 import asyncio
+import json
 import os
 import re
 import sys
 import threading
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
 from concurrent.futures import Future
 from contextlib import suppress
 from dataclasses import dataclass
 from queue import SimpleQueue
 from typing import Any, BinaryIO, cast
 
+import mcp_types as types
 from mcp.server.stdio import stdio_server
 
 from jacaros.runtime.mas.system import System
@@ -22,9 +24,19 @@ from jacaros.serving.mcp.server import Context, McpServer
 from jacaros.serving.service import service_of
 
 LONGEST_LINE = 1 << 20
-"""Maximum length of a message, in bytes; a longer one is skipped."""
+"""Maximum length of a message, in bytes."""
 MOST_LINES = 100
 """Number of messages that are read ahead."""
+_MALFORMED = json.dumps(
+    {
+        "jsonrpc": "2.0",
+        "id": None,
+        "error": {
+            "code": types.PARSE_ERROR,
+            "message": f"not a JSON-RPC message of at most {LONGEST_LINE} bytes",
+        },
+    }
+)
 
 
 @dataclass(frozen=True)
@@ -51,18 +63,26 @@ class Lines:
 
     Args:
         file: where to read.
+        answer: answers a line that is not a message.
         ended: called when the client has closed it.
     """
 
-    def __init__(self, file: BinaryIO, ended: Callable[[], None]) -> None:
-        self._file, self._ended = file, ended
+    def __init__(
+        self, file: BinaryIO, answer: Callable[[str], Awaitable[None]], ended: Callable[[], None]
+    ) -> None:
+        self._file, self._answer, self._ended = file, answer, ended
         self._loop = asyncio.get_running_loop()
         self._lines = asyncio.Queue[str | None](MOST_LINES)
         threading.Thread(target=self._read, name="jacaros mcp input", daemon=True).start()
 
     async def __aiter__(self) -> AsyncIterator[str]:
         while (line := await self._lines.get()) is not None:
-            yield line
+            try:
+                types.jsonrpc_message_adapter.validate_json(line, by_name=False)
+            except ValueError:
+                await self._answer(_MALFORMED + "\n")  # the SDK says nothing
+            else:
+                yield line
         self._ended()
 
     def _read(self) -> None:
@@ -70,7 +90,7 @@ class Lines:
             while line := self._file.readline(LONGEST_LINE):
                 rest = line
                 while not rest.endswith(b"\n") and (rest := self._file.readline(LONGEST_LINE)):
-                    line = b""  # it is too long
+                    line = b"too long"
                 if line.strip():
                     self._pass(line.decode("utf-8", "replace"))
             self._pass(None)
@@ -137,8 +157,8 @@ class StdioDoor:
             return self._client
 
         server = McpServer(self._system.deployment.name, client_of, self._patience).server
-        lines = Lines(os.fdopen(self._wire.source, "rb", closefd=False), self._left)
         writer = Writer(os.fdopen(self._wire.sink, "wb", closefd=False))
+        lines = Lines(os.fdopen(self._wire.source, "rb", closefd=False), writer.write, self._left)
         async with stdio_server(cast(Any, lines), cast(Any, writer)) as (read, write):
             await server.run(read, write, server.create_initialization_options())
         with suppress(RequestError):  # the run has ended

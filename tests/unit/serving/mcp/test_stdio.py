@@ -175,3 +175,14 @@ def test_a_run_that_ends_does_not_wait_for_its_client(tmp_path: Path) -> None:
         assert run.stdout is not None
         assert run.stderr is not None
         assert (run.stdout.read(), b"[brief] hello" in run.stderr.read()) == (b"", True)
+
+
+@pytest.mark.parametrize(
+    "line", ["x", "[" * 10_000, "{}", '{"jsonrpc": "2.0", "id": 1, "method": 3}', "x" * 3_000_000]
+)
+def test_a_line_that_is_not_a_message_is_answered(line: str, tmp_path: Path) -> None:
+    (tmp_path / "lamp.asl").write_text(LAMP)
+    command = [sys.executable, "-m", "jacaros", "mcp", str(tmp_path / "lamp.asl")]
+    found = subprocess.run(command, input=f"{line}\n", capture_output=True, text=True, timeout=60, check=True)
+    error = json.loads(found.stdout)["error"]
+    assert error == {"code": -32700, "message": "not a JSON-RPC message of at most 1048576 bytes"}
