@@ -189,7 +189,8 @@ def parsed(written: str) -> tuple[str, list[Term], dict[str, Term]]:
     try:
         term = bare(lower_value(parse_literal(check_text(written)), names.__getitem__))
     except (AslError, ArithmeticFault, RecursionError) as error:
-        first = str(error).splitlines()[0] if str(error) else "nested too deeply"
+        known = error.diagnostics if isinstance(error, AslError) else ()
+        first = known[0].message if known else str(error).partition("\n")[0] or "nested too deeply"
         raise RequestError("invalid_arguments", f"not a literal: {first}") from None
     symbol, *arguments = term if term.__class__ is tuple else (term,)
     if symbol.negated or symbol.namespace:

@@ -64,10 +64,14 @@ class Resources:
             route("GET", "/openapi.json", self.openapi),
             route("GET", "/agents", self.agents),
             route("GET", "/agents/{agent}", self.agent),
+            route("POST", "/agents/{agent}/goals", self.achieve_text),
             route("POST", "/agents/{agent}/goals/{name}", self.achieve),
+            route("POST", "/agents/{agent}/beliefs", partial(self.tell_text, untell=False)),
+            route("DELETE", "/agents/{agent}/beliefs", partial(self.tell_text, untell=True)),
             route("GET", "/agents/{agent}/beliefs/{name}", self.beliefs),
             route("POST", "/agents/{agent}/beliefs/{name}", partial(self.tell, untell=False)),
             route("DELETE", "/agents/{agent}/beliefs/{name}", partial(self.tell, untell=True)),
+            route("POST", "/agents/{agent}/questions", self.ask),
             route("POST", "/agents/{agent}/questions/{name}", self.query),
             route("GET", "/goals", self.goals),
             route("GET", "/goals/{id}", self.goal),
@@ -114,13 +118,25 @@ class Resources:
 
     async def achieve(self, request: Request, client: Client) -> Response:
         """``POST /agents/A/goals/G``: give it a goal."""
-        given, wait = await arguments_of(request), _wait(request)
+        given = await arguments_of(request)
         agent, name = request.path_params["agent"], request.path_params["name"]
+        return await self._give(request, client, lambda session: session.achieve(agent, name, given))
+
+    async def achieve_text(self, request: Request, client: Client) -> Response:
+        """``POST /agents/A/goals``: give it a goal as text in the language, ``{"text": "deliver(\\"p1\\", lab)"}``."""
+        written, agent = await _text_of(request), request.path_params["agent"]
+        return await self._give(request, client, lambda session: session.achieve_text(agent, written))
+
+    async def _give(
+        self, request: Request, client: Client, give: Callable[[Session], RequestedGoal]
+    ) -> Response:
+        """Give a goal, and return it when it is accepted or refused."""
+        wait = _wait(request)
         taken: list[RequestedGoal] = []
 
         def take(session: Session) -> RequestedGoal:
             if not taken:
-                taken.append(session.achieve(agent, name, given))
+                taken.append(give(session))
             return taken[0]
 
         async def settled(session: Session) -> dict[str, Any]:
@@ -187,6 +203,17 @@ class Resources:
         given = await arguments_of(request)
         agent, name = request.path_params["agent"], request.path_params["name"]
         return _json({"answers": await client.do(lambda session: session.query(agent, name, given))})
+
+    async def tell_text(self, request: Request, client: Client, untell: bool) -> Response:
+        """``POST`` and ``DELETE /agents/A/beliefs``: tell a belief as text in the language, or take it back."""
+        written, agent = await _text_of(request), request.path_params["agent"]
+        await client.do(lambda session: session.tell_text(agent, written, untell))
+        return Response(status_code=204, headers=HEADERS)
+
+    async def ask(self, request: Request, client: Client) -> Response:
+        """``POST /agents/A/questions``: ask a question as text in the language. The answers name its variables."""
+        written, agent = await _text_of(request), request.path_params["agent"]
+        return _json({"answers": await client.do(lambda session: session.ask(agent, written))})
 
     async def why(self, request: Request, client: Client) -> Response:
         """``GET /why?question=…&at=…``: explain the run."""
@@ -316,6 +343,14 @@ async def _left(request: Request) -> None:
 
 def _json(data: Mapping[str, Any], status: int = 200, headers: Mapping[str, str] | None = None) -> Response:
     return Response(f"{encoded(data)}\n", status, {**HEADERS, **(headers or {})}, "application/json")
+
+
+async def _text_of(request: Request) -> str:
+    """Return the text in the body ``{"text": …}`` of a request."""
+    match await arguments_of(request):
+        case {"text": str(written), **others} if not others:
+            return written
+    raise RequestError("invalid_arguments", 'expected {"text": "…"}')
 
 
 def _wait(request: Request) -> float:

@@ -63,7 +63,7 @@ def described(agent: str, offers: Iterable[Offer]) -> Json:
 
 
 def _described(offer: Offer) -> Json:
-    found: Json = {"name": offer.name, "doc": offer.doc, "roles": sorted(offer.roles)}
+    found: Json = {"name": offer.name, "form": str(offer), "doc": offer.doc, "roles": sorted(offer.roles)}
     if offer.what in ("goal", "question"):
         found |= {"arguments": schema_of(offer.inputs), "results": schema_of(_results(offer))}
     else:
@@ -110,6 +110,8 @@ def document(title: str, offered: Mapping[str, Sequence[Offer]]) -> Json:
     answer = _operation("Answer a question to a person", {"204": {"description": "Answered"}}, goal)
     add("post", "/questions/{id}", answer | _body(given))
     for agent, offers in offered.items():
+        for method, path, operation in _written():
+            add(method, f"/agents/{quote(agent, '')}/{path}", operation | {"tags": [agent]})
         for offer in offers:
             for method, path, operation in _operations(offer):
                 add(method, f"/agents/{quote(agent, '')}/{path}", operation | {"tags": [agent]})
@@ -123,6 +125,21 @@ def document(title: str, offered: Mapping[str, Sequence[Offer]]) -> Json:
             "schemas": {"Goal": _GOAL, "Problem": _PROBLEM},
         },
     }
+
+
+def _written() -> Iterable[tuple[str, str, Json]]:
+    """Yield methods, paths and operations that take text in the language."""
+    written = {"type": "object", "properties": {"text": _TEXT}, "required": ["text"]}
+    body, done = _body(written), {"204": {"description": "Done"}}
+    wait = _parameter("Prefer", "header", "`wait=N`: wait up to N seconds for the end")
+    yield (
+        "post",
+        "goals",
+        _operation("Give a goal, as text", {"201": _json("Given", _ref("Goal"))}, wait) | body,
+    )
+    yield "post", "questions", _operation("Ask a question, as text", {"200": _json("Answers")}) | body
+    yield "post", "beliefs", _operation("Tell a belief, as text", done) | body
+    yield "delete", "beliefs", _operation("Take back a belief, as text", done) | body
 
 
 def _operations(offer: Offer) -> Iterable[tuple[str, str, Json]]:
