@@ -31,6 +31,11 @@ COMMANDS = {
     "demo": ("jacaros.runtime.cli.run:demo", "Show a robot on patrol."),
     "run": ("jacaros.runtime.cli.run", "Run an agent program or a project."),
     "mcp": ("jacaros.runtime.cli.mcp", "Run an agent program, and serve it to a language model."),
+    "console": ("jacaros.runtime.cli.talking:console", "Talk to the agents of a running system."),
+    "achieve": ("jacaros.runtime.cli.talking:achieve", "Give a goal to an agent of a running system."),
+    "ask": ("jacaros.runtime.cli.talking:ask", "Ask an agent of a running system."),
+    "tell": ("jacaros.runtime.cli.talking:tell", "Tell a belief to an agent of a running system."),
+    "events": ("jacaros.runtime.cli.talking:events", "Print what happens in a running system."),
     "check": (
         "jacaros.runtime.cli.programs:check",
         "Report problems in programs, projects and mapping files.",

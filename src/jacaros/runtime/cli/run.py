@@ -203,16 +203,17 @@ def command(
         if service.serve is not None:
             raise usage_error("--serve serves one node", "name it: --node NAME instead of --all-nodes")
         return _run_nodes(project, outputs, options.fleet_keys)
-    console = StandardConsole(
-        "warning" if quiet else "info", patience=FAST_PATIENCE if options.fast else PATIENCE
-    )
+    own = service.own_console()
+    stream = None if own is None else own.stream
+    patience = FAST_PATIENCE if options.fast else PATIENCE
+    console = StandardConsole("warning" if quiet else "info", stream, stream, patience)
     for each in notes:
         console.log(each)
     code = 1
     try:
 
         def open_doors(mas: System) -> None:
-            service.begin(mas, console.log)
+            service.begin(mas, console.log, own)
             _open_to_ros(mas, offer=offer, lifecycle=lifecycle)
             if open_door is not None:
                 open_door(mas)
@@ -249,9 +250,9 @@ def _launch(
     open_doors: Callable[[System], None] = lambda _: None,
 ) -> int:
     def begin(mas: System) -> None:
-        open_doors(mas)
         if sys.stdin is not None:  # otherwise the descriptor 0 may be another file
             mas.input = LineInput()
+        open_doors(mas)
         if explained:
             from jacaros.look.why.why import Announcer  # here: few runs are explained
 

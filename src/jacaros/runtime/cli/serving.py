@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, fields
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -13,6 +13,9 @@ from jacaros.runtime.cli.options import PATH, option, with_options
 from jacaros.runtime.cli.outputs import LOOPBACK
 from jacaros.runtime.cli.usage import usage_error
 from jacaros.runtime.mas.system import System
+
+if TYPE_CHECKING:
+    from jacaros.serving.shell.console import Console
 
 _ADDRESS = re.compile(r"(?:(?P<host>\[[0-9A-Fa-f:.]+\]|[A-Za-z0-9._-]+):)?(?P<port>\d{1,5})")
 
@@ -44,6 +47,7 @@ serve_options = with_options(
     ),
     option("--tls-cert FILE", "Certificate for HTTPS, PEM with the whole chain.", PATH),
     option("--tls-key FILE", "Private key of the certificate, PEM.", PATH),
+    option("--console", "Read goals and questions from the standard input (`jacaros console`).", hidden=True),
 )
 """Add the options that say where to serve callers, and whom."""
 
@@ -56,6 +60,7 @@ class RequestedService:
     tokens: Path | None = None
     tls_cert: Path | None = None
     tls_key: Path | None = None
+    console: bool = False
 
     @classmethod
     def taken_from(cls, options: dict[str, Any]) -> "RequestedService":
@@ -80,7 +85,15 @@ class RequestedService:
         if not all(map(find_spec, ("starlette", "uvicorn"))):
             raise usage_error("--serve needs starlette and uvicorn", 'pip install "jacaros[serve]"')
 
-    def begin(self, mas: System, log: Callable[[str, str], object]) -> None:
+    def own_console(self) -> "Console | None":
+        """Return the console of this process, if one is wanted."""
+        if not self.console:
+            return None
+        from jacaros.serving.shell.console import Console  # here: few runs have a console
+
+        return Console()
+
+    def begin(self, mas: System, log: Callable[[str, str], object], console: "Console | None" = None) -> None:
         """Serve a run until it ends.
 
         Raises:
@@ -102,7 +115,9 @@ class RequestedService:
             mounts[PATH] = mcp_app(mas)
         door = HttpDoor(mas, Address(host, port, self.tls_cert, self.tls_key), tokens, mounts)
         log(f"serve: {door.url}", "info")
-        if tokens is None:
+        if console is not None:
+            console.begin(mas, door.url, door.token, self.tls_cert)
+        elif tokens is None:
             log(f"serve: the token of an operator is {door.token}", "info")
         if Hosts(host).exposed and self.tls_cert is None:
             log(

@@ -1,0 +1,1 @@
+"""Consoles and commands that talk to the agents of a running system over HTTP."""

@@ -1,0 +1,207 @@
+"""The lines of a console, and what each of them does."""
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+
+from jacaros.runtime.errors import JacarosError, UsageError
+from jacaros.runtime.files.texts import suggestion
+from jacaros.serving.client import Client, Json, Offered, ServiceError
+from jacaros.serving.shell.choice import GOALS, NOUNS, QUESTIONS, TELLS, chosen
+from jacaros.serving.shell.wording import answer_lines, error_text, event_text, row_text, state_text
+
+HELP = """\
+!deliver("p1", kitchen)  give a goal to the agent that offers it
+?battery(Level)          ask a question, or for a belief
++closed(kitchen)         tell a belief
+-closed(kitchen)         take it back
+bob !deliver("p1", lab)  the same of one agent, if several offer it
+agents                   list the agents and what they offer
+beliefs                  list the beliefs that agents offer
+goals                    list the newest goals
+cancel N                 cancel goal N
+why EVENT                explain the run, such as: why +battery(50)
+questions                list open questions of agents to a person
+answer ID TEXT           answer one
+quit                     leave (or press Ctrl+D)"""
+SIGNS = {"goals": "!", "questions": "?", "beliefs": "?", "tells": "+"}
+"""What a line begins with, by the kind of the offer."""
+KEPT = 1_000
+"""Number of goals whose numbers are known."""
+_KINDS = {"!": GOALS, "?": QUESTIONS, "+": TELLS, "-": TELLS}
+_REQUEST = re.compile(r"(?:(?P<agent>[\w.]+)\s+)?(?P<sign>[!?+-])\s*(?P<text>.+?)\.?", re.DOTALL)
+
+
+def written(kind: str, agent: str, text: str) -> str:
+    """Return a request as a line of the console."""
+    return f"{agent} {SIGNS[kind]}{text}".strip()
+
+
+class Dialogue:
+    """Executes lines.
+
+    Args:
+        client: the system.
+        show: prints a line.
+        waits: wait for the end of each goal, as in a script. Otherwise somebody else shows `event`.
+    """
+
+    def __init__(self, client: Client, show: Callable[[str], None], waits: bool) -> None:
+        self._client, self._show, self._waits = client, show, waits
+        self._numbers: dict[str, int] = {}
+        self._newest = 0
+        self._told: dict[str, str] = {}
+        self.offers: Sequence[Offered] = ()
+        self.commands: dict[str, Callable[[str], object]] = {
+            "agents": self._list_agents,
+            "answer": self._answer,
+            "beliefs": self._list_beliefs,
+            "cancel": self._cancel,
+            "goals": self._list_goals,
+            "help": lambda _: self._show(HELP),
+            "questions": self._list_questions,
+            "why": lambda text: self._show(client.why(text)),
+            "quit": lambda _: None,
+        }
+
+    def greet(self) -> None:
+        """Show which agents offer something."""
+        names = ", ".join(dict.fromkeys(each.agent for each in self.offers))
+        told = f"agents: {names}" if names else "no agent offers anything to you"
+        self._show(f"{told}; `help` lists what you can write")
+
+    def refresh(self) -> None:
+        """Read what the agents offer now."""
+        self.offers = self._client.offers()
+
+    def execute(self, line: str) -> bool:
+        """Execute a line. Return False if it fails."""
+        form = [""]
+        try:
+            return self._execute(line.strip(), form)
+        except ServiceError as error:
+            self._show(error_text(error, form[0]))
+        except JacarosError as error:
+            told = str(error)
+            self._show(told if told.startswith("error: ") else f"error: {told}")
+        return False
+
+    def _execute(self, line: str, form: list[str]) -> bool:
+        if not line or line.startswith("//"):
+            return True
+        name, _, rest = line.partition(" ")
+        command = self.commands.get(name)
+        if command is not None:
+            return command(rest.strip()) is not False
+        if found := _REQUEST.fullmatch(line):
+            self.refresh()
+            sign, text = found["sign"], found["text"]
+            offer = chosen(self.offers, _KINDS[sign], text, found["agent"] or "", written)
+            form[0] = offer.form
+            return self._request(sign, offer.agent, text)
+        help = suggestion(name, self.commands, "`!goal`, `?question`, `+belief`, `-belief`, or `help`")
+        raise UsageError(f"error: unknown command: `{name}`\n  = help: {help}")
+
+    def _request(self, sign: str, agent: str, text: str) -> bool:
+        match sign:
+            case "!":
+                return self._achieve(agent, text)
+            case "?":
+                for each in answer_lines(self._client.ask(agent, text)):
+                    self._show(each)
+            case _:
+                self._client.tell(agent, text, untell=sign == "-")
+        return True
+
+    # ---- goals
+
+    def _achieve(self, agent: str, text: str) -> bool:
+        if not self._waits:
+            self._client.achieve(agent, text)
+            return True
+        state = ""
+        for goal in self._client.follow(lambda: self._client.achieve(agent, text)):
+            state = goal["state"]
+            if told := self.event({"event": "goal", **goal}):
+                self._show(told)
+        return state == "achieved"
+
+    def event(self, event: Json) -> str:
+        """Return an event as a line; empty if it brings nothing new."""
+        if event["event"] != "goal":
+            return event_text(event)
+        id, told = event["id"], event_text(event, f"goal {self._number(event['id'])}")
+        is_news = event["state"] != "pending" and told != self._told.get(id)
+        self._told[id] = told
+        return told if is_news else ""
+
+    def _number(self, id: str) -> int:
+        if id not in self._numbers:
+            self._newest += 1
+            self._numbers[id] = self._newest
+            if len(self._numbers) > KEPT:
+                oldest = next(iter(self._numbers))
+                del self._numbers[oldest]
+                self._told.pop(oldest, None)
+        return self._numbers[id]
+
+    def _list_goals(self, _: str) -> None:
+        goals = self._client.goals()
+        for each in goals:
+            number = self._number(each["id"])
+            self._show(
+                f"{number:3}  [{each['agent']}] !{each['written']} for {each['caller']}: {state_text(each)}"
+            )
+        if not goals:
+            self._show("no goals")
+
+    def _cancel(self, text: str) -> None:
+        id = next((id for id, number in self._numbers.items() if str(number) == text), None)
+        if id is None:
+            known = "`goals` lists their numbers" if self._numbers else "no goal has been given"
+            raise UsageError(f"error: unknown goal: `{text}`\n  = help: {known}")
+        self._client.cancel(id)
+
+    # ---- what there is
+
+    def _list_agents(self, _: str) -> None:
+        self.refresh()
+        agent = ""
+        for each in self.offers:
+            if each.agent != agent:
+                agent = each.agent
+                self._show(agent)
+            sign = SIGNS.get(each.kind, "")
+            self._show(f"  {NOUNS[each.kind]:14} {sign}{each.form}" + (f"  {each.doc}" if each.doc else ""))
+        if not self.offers:
+            self._show("no agent offers anything to you")
+
+    def _list_beliefs(self, _: str) -> None:
+        self.refresh()
+        for each in self._beliefs():
+            rows = self._client.beliefs(each.agent, each.name)
+            for row in rows:
+                self._show(f"[{each.agent}] {each.name}: {row_text(row) or 'yes'}")
+            if not rows:
+                self._show(f"[{each.agent}] {each.name}: no")
+
+    def _beliefs(self) -> Iterator[Offered]:
+        found = [each for each in self.offers if each.kind == "beliefs"]
+        if not found:
+            self._show("no agent offers beliefs to you")
+        return iter(found)
+
+    # ---- questions to a person
+
+    def _list_questions(self, _: str) -> None:
+        questions = self._client.questions()
+        for each in questions:
+            options = "".join(f" {number}) {text}" for number, text in enumerate(each["options"], 1))
+            self._show(f"{each['id']}: {each['text']}{options}")
+        if not questions:
+            self._show("no open questions")
+
+    def _answer(self, text: str) -> None:
+        id, _, given = text.partition(" ")
+        asked = next((each for each in self._client.questions() if each["id"] == id), None)
+        is_option = asked is not None and asked["options"] and given.isdecimal()
+        self._client.answer(id, int(given) if is_option else given)
