@@ -60,10 +60,13 @@ class Crossing:
         """Await a coroutine function on the loop of the run. Return its result, or raise its exception."""
         done: Future[T] = Future()
 
+        async def work() -> T:
+            return await function(*args)
+
         def start() -> None:
             if done.cancelled():
                 return  # the door no longer wants it
-            task = self._loop.create_task(function(*args))
+            task = self._loop.create_task(work())
             task.add_done_callback(partial(_pass_on, done))
             done.add_done_callback(lambda _: self._stop(task))
 
@@ -99,7 +102,13 @@ class Crossing:
                     self._is_scheduled = False
                     return
                 request = self._requests.popleft()
-            request()
+            try:
+                request()
+            except BaseException:
+                self._loop.call_soon(
+                    self._execute
+                )  # the loop handles the error; the next request is executed
+                raise
             if time.perf_counter() > until:
                 self._loop.call_soon(self._execute)
                 return

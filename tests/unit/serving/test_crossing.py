@@ -74,6 +74,22 @@ def test_exceptions_cross_too() -> None:
     assert through_a_door(main) == ["RequestError('no')", "TimeoutError('of the function')", "KeyError('k')"]
 
 
+def test_a_request_that_raises_does_not_stop_the_next_ones() -> None:
+    async def main(way: Crossing) -> int:
+        def fail() -> None:
+            raise asyncio.CancelledError
+
+        def no_coroutine() -> Coroutine[Any, Any, None]:
+            raise KeyError("k")
+
+        way.post(fail)
+        with pytest.raises(KeyError):
+            await way.wait(no_coroutine)
+        return await way.call(int)
+
+    assert through_a_door(main) == 0
+
+
 def test_the_door_waits_while_the_run_on_a_virtual_clock_jumps() -> None:
     async def main(way: Crossing) -> float:
         begun = time.monotonic()

@@ -4,11 +4,13 @@ import asyncio
 import os
 import socket
 import ssl
+from collections import Counter
 from collections.abc import Callable, Mapping
 from contextlib import AbstractAsyncContextManager, AsyncExitStack
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from traceback import format_exception
 
 import uvicorn
 from starlette.types import ASGIApp
@@ -30,6 +32,8 @@ GOODBYE = 1
 """Seconds for the last responses and events when the run ends."""
 KEEP_ALIVE = 30
 """Seconds that a connection stays open between two requests."""
+MOST_DEFECTS = 100
+"""Maximum number of different defects that are logged."""
 LARGEST_HEADER = 16 * 1024
 """Maximum size of the header of a request, in bytes."""
 MountedApp = Callable[[Crossing], AbstractAsyncContextManager[ASGIApp]]
@@ -80,6 +84,7 @@ class HttpDoor:
         self._tokens = tokens or Tokens({})
         self.token = self._tokens.new("operator")
         self._service = service_of(system)
+        self._defects: Counter[str] = Counter()
         help = "choose another address: --serve [ADDRESS:]PORT"
         _check_certificate(address)
         self._socket = listening_socket("HTTP", address.host, address.port, help, MOST_CONNECTIONS)
@@ -99,8 +104,15 @@ class HttpDoor:
             self._file = None
 
     def _failed(self, error: Exception) -> None:
-        told = f"error: HTTP server: {type(error).__name__}: {error}"
-        self._system.console.log(told, "error")
+        """Log a defect, on its first, 10th and 100th occurrence."""
+        told = f"{type(error).__name__}: {error}"
+        if len(self._defects) < MOST_DEFECTS or told in self._defects:
+            self._defects[told] += 1
+        if (count := self._defects[told]) in (1, 10, 100):
+            times = f" ({count} times)" if count > 1 else ""
+            text = f"internal error: HTTP server: {told}{times}; please file an issue"
+            trace = "\n" + "".join(format_exception(error)).rstrip() if count == 1 else ""
+            self._system.console.log(text + trace, "error")
 
     async def _serve(self, crossing: Crossing) -> None:
         clients = Clients(crossing, self._service)

@@ -14,6 +14,7 @@ from http_lab import Lab, problem, serve, token
 from jacaros.runtime.errors import UsageError
 from jacaros.serving.http import guard, protocol
 from jacaros.serving.http.door import Address
+from jacaros.serving.service import Session
 
 BATTERY = "/agents/bob/beliefs/battery"
 CURL = shutil.which("curl")
@@ -204,6 +205,34 @@ def test_a_certificate_that_cannot_be_read_is_an_error_before_the_run_serves(tmp
     wrong.write_text("no certificate")
     with pytest.raises(UsageError, match=r"cannot use the certificate .*cert\.pem"):
         serve(test, address=Address(certificate=wrong, key=wrong))
+
+
+def test_a_defect_is_logged_without_a_flood(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(_: Session) -> None:
+        raise KeyError("oh")
+
+    monkeypatch.setattr(Session, "goals", broken)
+
+    async def test(lab: Lab) -> None:
+        for _ in range(30):
+            problem(await lab.anna.get("/goals"), 500, "internal_error")
+
+    log = [line for line in serve(test) if "internal error" in line]
+    assert len(log) == 2
+    assert log[0].startswith("internal error: HTTP server: KeyError: 'oh'; please file an issue\nTraceback")
+    assert log[1] == "internal error: HTTP server: KeyError: 'oh' (10 times); please file an issue"
+
+
+def test_a_run_that_starts_again_serves_at_the_same_port() -> None:
+    ports = [0]
+
+    async def test(lab: Lab) -> None:
+        ports.append(httpx.URL(lab.door.url).port or 0)
+        assert (await lab.anna.get(BATTERY)).status_code == 200
+
+    serve(test)
+    serve(test, address=Address(port=ports[1]))
+    assert ports[1] == ports[2]
 
 
 PATHS = (
