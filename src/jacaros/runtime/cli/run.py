@@ -169,6 +169,8 @@ def command(
     outputs.check()
     service = RequestedService.taken_from(given)
     service.check()
+    if all_nodes and service.serve is not None:
+        raise usage_error("--serve serves one node", "name it: --node NAME instead of --all-nodes")
     if explained:
         from jacaros.look.why.patterns import QuestionPattern  # here: few runs are explained
 
@@ -200,8 +202,6 @@ def command(
         raise usage_error("--lifecycle needs a ROS 2 graph", "add --ros ros2")
     if all_nodes:
         options.check()
-        if service.serve is not None:
-            raise usage_error("--serve serves one node", "name it: --node NAME instead of --all-nodes")
         return _run_nodes(project, outputs, options.fleet_keys)
     own = service.own_console()
     stream = None if own is None else own.stream
