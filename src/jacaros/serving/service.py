@@ -20,6 +20,7 @@ from jacaros.look.why.tales import StoryLine
 from jacaros.look.why.why import explain
 from jacaros.runtime.clock import of_run, start_thread
 from jacaros.runtime.errors import UsageError
+from jacaros.runtime.files.texts import printable
 from jacaros.runtime.mas.system import System
 from jacaros.runtime.trace import Cause
 from jacaros.serving import artifacts
@@ -124,9 +125,9 @@ class Service:
         level = {"failed": "warning", "refused": "info"}.get(goal.state, "debug")
         if goal.agent not in self.agents:
             level = "debug"  # there may be hundreds when an agent or the run ends
-        self.system.console.log(
-            f"[{goal.agent}] {level}: {goal.state} !{goal.written} for {goal.caller}{why}", level
-        )
+        told = f"{goal.state} !{goal.written} for {goal.caller}{why}"
+        line = printable(told.replace("\n", " "))  # a caller must not be able to write lines of the log
+        self.system.console.log(f"[{goal.agent}] {level}: {line}", level)
 
     # ---- requests
 

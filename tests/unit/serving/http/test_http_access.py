@@ -207,6 +207,19 @@ def test_a_certificate_that_cannot_be_read_is_an_error_before_the_run_serves(tmp
         serve(test, address=Address(certificate=wrong, key=wrong))
 
 
+def test_a_caller_cannot_write_lines_of_the_log() -> None:
+    async def test(lab: Lab) -> None:
+        await lab.anna.post("/agents/bob/beliefs/closed", json={"room": "office"})
+        parcel = "x\n[bob] error: forged\x1b[2J" + "y" * 5_000
+        given = await lab.anna.post("/agents/bob/goals/deliver", json={"parcel": parcel, "room": "office"})
+        problem(given, 409, "refused")
+
+    (line,) = [line for line in serve(test) if "refused" in line]
+    assert "\n" not in line
+    assert "\x1b" not in line
+    assert len(line) < 600
+
+
 def test_a_defect_is_logged_without_a_flood(monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(_: Session) -> None:
         raise KeyError("oh")
