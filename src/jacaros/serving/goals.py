@@ -48,6 +48,7 @@ class RequestedGoal:
         message: why it was refused or has failed, in words.
         reasons: why, as terms.
         results: the results, by name.
+        watcher: called after each change; for doors that need no data of it.
         began: when it was given, in seconds of the run's clock since the Unix epoch.
         ended: when it ended, or None.
     """
@@ -71,6 +72,7 @@ class RequestedGoal:
         self.note, self.message = "", ""
         self.reasons: tuple[Term, ...] = ()
         self.results: dict[str, Data] = {}
+        self.watcher: Callable[[], None] | None = None
         self.began = host.now()
         self.ended: float | None = None
         self._watched: WatchedGoal | None = None
@@ -93,7 +95,7 @@ class RequestedGoal:
 
     def doing(self) -> str:
         """Return the innermost goal that the agent pursues for it now, as text; empty if none."""
-        for intention in self.intentions():
+        for intention in self._some_intention():
             for literal in goals.goal_literals(intention):
                 return text(resolve(bare(literal)))
         return ""
@@ -152,6 +154,13 @@ class RequestedGoal:
     def intentions(self) -> list[Intention]:
         """Return the intentions that pursue it."""
         return self._watched.intentions() if self._watched is not None and not self.over else []
+
+    def _some_intention(self) -> list[Intention]:
+        """Return the intention that began to pursue it while that lives: a search takes long if there are many."""
+        watched = self._watched
+        if watched is not None and watched.first.id in watched.agent.alive:
+            return [watched.first]
+        return self.intentions()
 
     def accept(self) -> None:
         """The agent accepts it."""

@@ -107,9 +107,17 @@ class Service:
     def goal_changed(self, goal: RequestedGoal) -> None:
         """A goal has changed: tell its caller, and operators."""
         owner = goal.caller
-        if any(each.listeners for each in self.sessions):
+        concerned = [
+            each
+            for each in self.sessions
+            if each.listeners and (each.caller == owner or each.caller.has(("operator",)))
+        ]
+        if concerned:
             told = {"event": "goal", **goal.data()}
-            self.tell(told, lambda caller: caller == owner or caller.has(("operator",)))
+            for session in concerned:
+                session.hear(told)
+        if goal.watcher is not None:
+            goal.watcher()
         if not goal.over:
             return
         self._log(goal)

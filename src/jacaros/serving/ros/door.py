@@ -28,7 +28,7 @@ from jacaros.serving.ros.forms import (
     wrong_names,
 )
 from jacaros.serving.ros.pursuit import Pursuits
-from jacaros.serving.service import Event, Session, service_of
+from jacaros.serving.service import Session, service_of
 
 ANONYMOUS = "anonymous"
 """Name of callers whose node is unknown: only ROS 1 reports it, with a goal."""
@@ -70,7 +70,7 @@ class RosDoor:
         self._codecs, self._roles = dict(codecs or {}), frozenset(roles)
         self._service = service_of(system)
         self._sessions: dict[str, Session] = {}
-        self._pursuits = Pursuits()
+        self._pursuits = Pursuits(system.clock.now)
         self._looking: Timer | None = None
         self._agents: dict[str, AgentEndpoints] = {}
         for name in self.session(ANONYMOUS).agents():
@@ -79,10 +79,12 @@ class RosDoor:
             set(self._codecs) - {each.name for end in self._agents.values() for each in end.offers}
         ):
             self.warn(f"no agent offers `{name}`, which a mapping file describes")
+        self._end_watch = system.directory.watch(self._agent_changed)
         system.when_ended(lambda _: self.close())
 
     def close(self) -> None:
         """Withdraw everything from the graph. Goals go on, or are cancelled, as their offers say."""
+        self._end_watch()
         if self._looking is not None:
             self._looking.cancel()
         for endpoints in tuple(self._agents.values()):
@@ -99,20 +101,17 @@ class RosDoor:
         found = self._sessions.get(name)
         if found is None:
             found = self._sessions[name] = self._service.open(Caller(name, "ros", self._roles))
-            found.listen(self._happened)
         return found
 
     def warn(self, text: str) -> None:
         """Log a warning."""
         self._system.console.log(f"[ros] warning: {text}", "warning")
 
-    def _happened(self, event: Event) -> None:
-        if event["event"] == "goal":
-            self._pursuits.changed(event["id"], self._system.clock.now())
-        elif event["event"] == "agent_started":
-            self._agent_came(event["agent"])
-        elif event["event"] == "agent_ended" and event["agent"] in self._agents:
-            self._agents.pop(event["agent"]).close()
+    def _agent_changed(self, name: str, present: bool) -> None:
+        if present:
+            self._agent_came(name)
+        elif name in self._agents:
+            self._agents.pop(name).close()
 
     def _agent_came(self, name: str) -> None:
         if name not in self._agents and name in self.session().agents():
@@ -143,7 +142,7 @@ class RosDoor:
     def _look(self) -> None:
         self._looking = None
         with of_run():
-            self._pursuits.look(LOOKED_AT, self._system.clock.now())
+            self._pursuits.look(LOOKED_AT)
         if self._pursuits:
             self._look_later()
 

@@ -58,25 +58,25 @@ class Pursuit:
 
 
 class Pursuits:
-    """The goals of the graph that agents pursue now, by the id that the agent's goal has."""
+    """The goals of the graph that agents pursue now.
 
-    def __init__(self) -> None:
+    Args:
+        now: returns the time.
+    """
+
+    def __init__(self, now: Callable[[], float]) -> None:
+        self._now = now
         self._known: dict[str, Pursuit] = {}
 
     def __len__(self) -> int:
         return len(self._known)
 
-    def changed(self, goal_id: str, now: float) -> None:
-        """Send feedback of a goal that has changed."""
-        found = self._known.get(goal_id)
-        if found is not None:
-            found.report(now)
-
-    def look(self, most: int, now: float) -> None:
+    def look(self, most: int) -> None:
         """Send feedback of at most this number of goals. Those that are not looked at have their turn next.
 
         Goals whose clients have left are cancelled if their offers say so.
         """
+        now = self._now()
         for goal_id in list(self._known)[:most]:
             found = self._known[goal_id] = self._known.pop(goal_id)
             found.report(now)
@@ -95,7 +95,8 @@ class Pursuits:
             goal = form.give(session, served.request)
         except RequestError as error:
             raise Abort(error.message, form.refusal(error)) from None
-        self._known[goal.id] = Pursuit(served, goal, form, abandoned)
+        self._known[goal.id] = pursuit = Pursuit(served, goal, form, abandoned)
+        goal.watcher = lambda: pursuit.report(self._now())
         try:
             await _ended(served, goal, session)
         finally:

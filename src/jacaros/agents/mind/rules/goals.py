@@ -414,6 +414,7 @@ class WatchedGoal:
         achieved: the goal was achieved.
         failed: it failed, and no plan handled the failure.
         reason: why it failed, None if that is not known.
+        first: the intention that began to pursue it.
 
     Raises:
         ActionError: *goal* is not a literal.
@@ -439,7 +440,7 @@ class WatchedGoal:
         posted = (trigger("+", "!", symbol), *arguments)
         self.arguments = arguments
         self.identity = (_WATCHED, float(id(self)))
-        intention = Intention(agent, cause)
+        self.first = intention = Intention(agent, cause)
         intention.on_failed, intention.on_end = (self._intention_failed, ()), (self._intention_ended, ())
         intention.on_wait = on_wait
         frame: Frame = [self._reached, self.identity, BY_SELF, agent.trail.serial, _BOTTOM, *arguments]
