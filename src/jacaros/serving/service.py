@@ -285,16 +285,19 @@ class Session:
 
     def _give(self, agent: OfferingAgent, offer: Offer, arguments: Sequence[Any]) -> RequestedGoal:
         if len(self._own) >= MOST_ALIVE:
-            self._own = {id: each for id, each in self._own.items() if not each.over}
-        if len(self._own) >= MOST_ALIVE:
             raise RequestError("too_many_requests", f"{MOST_ALIVE} goals of this session have not ended")
         service = self._service
         goal = RequestedGoal(
-            secrets.token_hex(8), agent.host, offer, arguments, self.caller, service.goal_changed
+            secrets.token_hex(8), agent.host, offer, arguments, self.caller, self._goal_changed
         )
         self._own[goal.id] = service.goals[goal.id] = goal
         agent.take(goal, service.cause(self.caller, f"!{goal.written} of {agent.name}"))
         return goal
+
+    def _goal_changed(self, goal: RequestedGoal) -> None:
+        if goal.over:
+            self._own.pop(goal.id, None)
+        self._service.goal_changed(goal)
 
     def goal(self, id: str) -> RequestedGoal:
         """Return a goal of the caller; an operator sees all."""

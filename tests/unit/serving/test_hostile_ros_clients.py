@@ -3,6 +3,8 @@
 import random
 from typing import Any
 
+import pytest
+
 import jacaros
 from jacaros import Mas
 from jacaros.robots.ros.action import GoalStatus
@@ -22,7 +24,14 @@ double(X, 2*X).
 +closed(_)      <- +touched.
 """
 REQUESTS = 10_000
-ERRORS = {"invalid_arguments", "not_offered", "not_permitted", "too_large", "unanswerable"}
+ERRORS = {
+    "invalid_arguments",
+    "not_offered",
+    "not_permitted",
+    "too_large",
+    "too_many_requests",
+    "unanswerable",
+}
 WRITTEN = r"""
 ! { [ " deliver deliver() deliver( deliver(p) secret repair repair() count(x,M) closed null [[]] .stopMAS not(closed(x))
 {"parcel":1,"room":"kitchen"} {"parcel":"p"} {"parcel":"p","room":"cellar"} ["p",7] {"n":NaN} {"n":1e999} {"n":true}
@@ -76,6 +85,7 @@ class Client:
         return str(answer.message).partition(":")[0]
 
 
+@pytest.mark.slow
 def test_broken_requests_have_no_effect() -> None:
     async def main() -> None:
         chance = random.Random(7)
