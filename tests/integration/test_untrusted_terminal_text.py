@@ -63,6 +63,7 @@ RUNS: dict[str, list[list[str]]] = {
         ["run", "a.asl", "--fleet", "lab", "--fleet-allow", EVIL],
     ],
     "demo": [["demo", EVIL]],
+    "mcp": [["mcp", EVIL]],
     "version": [["version", EVIL]],
 }
 

@@ -13,6 +13,8 @@ from mcp.client.subscriptions import ResourceUpdated
 from mcp.shared.exceptions import MCPError
 from mcp_lab import ERAS, ROBOT, WORLD, client, text, told, wait_for, with_client
 
+from jacaros.runtime.cli.main import call
+
 LAMP = """
 { offer(goal, shine(seconds(number))) }
 { offer(goal, glow, when_left(cancel)) }
@@ -186,3 +188,12 @@ def test_a_line_that_is_not_a_message_is_answered(line: str, tmp_path: Path) -> 
     found = subprocess.run(command, input=f"{line}\n", capture_output=True, text=True, timeout=60, check=True)
     error = json.loads(found.stdout)["error"]
     assert error == {"code": -32700, "message": "not a JSON-RPC message of at most 1048576 bytes"}
+
+
+def test_without_the_sdk_the_command_says_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("jacaros.runtime.cli.mcp.find_spec", lambda name: None)
+    assert call(["mcp", "robot.asl"]) == 2
+    expected = 'error: MCP needs the Python package mcp\n  = help: pip install "jacaros[mcp]"\n'
+    assert capfd.readouterr() == ("", expected)
