@@ -18,7 +18,7 @@ from mcp.server.stdio import stdio_server
 
 from jacaros.runtime.mas.system import System
 from jacaros.serving.callers import Caller, RequestError
-from jacaros.serving.crossing import Crossing, DoorThread
+from jacaros.serving.crossing import Crossing, DoorThread, Outbox
 from jacaros.serving.mcp.clients import Client
 from jacaros.serving.mcp.server import Context, McpServer
 from jacaros.serving.service import service_of
@@ -26,7 +26,9 @@ from jacaros.serving.service import service_of
 LONGEST_LINE = 1 << 20
 """Maximum length of a message, in bytes."""
 MOST_LINES = 100
-"""Number of messages that are read ahead."""
+"""Number of messages that wait in each direction."""
+GOODBYE = 1.0
+"""Seconds for the last messages when the run ends."""
 _MALFORMED = json.dumps(
     {
         "jsonrpc": "2.0",
@@ -71,19 +73,23 @@ class Lines:
         self, file: BinaryIO, answer: Callable[[str], Awaitable[None]], ended: Callable[[], None]
     ) -> None:
         self._file, self._answer, self._ended = file, answer, ended
-        self._loop = asyncio.get_running_loop()
-        self._lines = asyncio.Queue[str | None](MOST_LINES)
+        self._lines: Outbox[str | None] = Outbox(asyncio.get_running_loop())
+        self._room = threading.Semaphore(MOST_LINES)
         threading.Thread(target=self._read, name="jacaros mcp input", daemon=True).start()
 
     async def __aiter__(self) -> AsyncIterator[str]:
-        while (line := await self._lines.get()) is not None:
-            try:
-                types.jsonrpc_message_adapter.validate_json(line, by_name=False)
-            except ValueError:
-                await self._answer(_MALFORMED + "\n")  # the SDK says nothing
-            else:
-                yield line
-        self._ended()
+        while True:
+            for line in await self._lines.take():
+                self._room.release()
+                if line is None:
+                    self._ended()
+                    return
+                try:
+                    types.jsonrpc_message_adapter.validate_json(line, by_name=False)
+                except ValueError:
+                    await self._answer(_MALFORMED + "\n")  # the SDK says nothing
+                else:
+                    yield line
 
     def _read(self) -> None:
         with suppress(OSError, RuntimeError):  # the loop has ended
@@ -96,7 +102,8 @@ class Lines:
             self._pass(None)
 
     def _pass(self, line: str | None) -> None:
-        asyncio.run_coroutine_threadsafe(self._lines.put(line), self._loop).result()
+        self._room.acquire()
+        self._lines.put(line)
 
 
 class Writer:
@@ -108,17 +115,29 @@ class Writer:
 
     def __init__(self, file: BinaryIO) -> None:
         self._file = file
-        self._texts = SimpleQueue[tuple[str, Future[None]]]()
+        self._texts = SimpleQueue[tuple[str, Future[None] | None]]()
         threading.Thread(target=self._write, name="jacaros mcp output", daemon=True).start()
 
     async def write(self, text: str) -> None:
-        """Write a text."""
+        """Write a text soon; wait if the client is slow to read."""
+        if self._texts.qsize() < MOST_LINES:
+            self._texts.put((text, None))
+        else:
+            await self._written(text)
+
+    async def flush(self) -> None:
+        """Do nothing: each text is flushed."""
+
+    async def finish(self) -> None:
+        """Wait until everything is written, for a limited time."""
+        with suppress(TimeoutError):
+            async with asyncio.timeout(GOODBYE):
+                await self._written("")
+
+    async def _written(self, text: str) -> None:
         done: Future[None] = Future()
         self._texts.put((text, done))
         await asyncio.wrap_future(done)
-
-    async def flush(self) -> None:
-        """All has been written."""
 
     def _write(self) -> None:
         while True:
@@ -126,7 +145,7 @@ class Writer:
             with suppress(OSError):  # the client is gone; its input will end, too
                 self._file.write(text.encode())
                 self._file.flush()
-            if done.set_running_or_notify_cancel():
+            if done is not None and done.set_running_or_notify_cancel():
                 done.set_result(None)
 
 
@@ -159,8 +178,11 @@ class StdioDoor:
         server = McpServer(self._system.deployment.name, client_of, self._patience).server
         writer = Writer(os.fdopen(self._wire.sink, "wb", closefd=False))
         lines = Lines(os.fdopen(self._wire.source, "rb", closefd=False), writer.write, self._left)
-        async with stdio_server(cast(Any, lines), cast(Any, writer)) as (read, write):
-            await server.run(read, write, server.create_initialization_options())
+        try:
+            async with stdio_server(cast(Any, lines), cast(Any, writer)) as (read, write):
+                await server.run(read, write, server.create_initialization_options())
+        finally:
+            await writer.finish()
         with suppress(RequestError):  # the run has ended
             if self._client is not None:
                 await self._client.leave()
