@@ -142,6 +142,7 @@ class Reader:
         ours = {"PATH": path, "COLUMNS": "100", "NO_COLOR": "1", "PYTHONUNBUFFERED": "1"}
         if kind == MEMORY:
             ours["JACAROS_CLOCK"] = "fast"  # nothing would be different in real time, but later
+            ours["XDG_RUNTIME_DIR"] = str(folder)  # the only running system is the page's
         self._environment = {**os.environ, **ours, **(environment or {})}
         self._exports = ""
         self._terminals: list[Command] = []

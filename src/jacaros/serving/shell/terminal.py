@@ -3,7 +3,7 @@
 import sys
 import threading
 from collections.abc import Iterator
-from contextlib import nullcontext, redirect_stdout, suppress
+from contextlib import redirect_stdout, suppress
 from pathlib import Path
 from typing import TextIO, cast
 
@@ -96,8 +96,8 @@ class Terminal:
         """Read lines and execute them, until the user leaves, or `leave`."""
         completer = OfferCompleter(dialogue)
         is_main = threading.current_thread() is threading.main_thread()
-        # A run of this process must not end by Ctrl+C while a line is executed.
-        with nullcontext() if is_main else self._input.raw_mode():
+        # While a line is executed, keys are kept for the next one, and Ctrl+C does not end a run of this process.
+        with self._input.raw_mode():
             while not self._left:
                 try:
                     line = self._session.prompt(completer=completer, handle_sigint=is_main)
@@ -105,7 +105,7 @@ class Terminal:
                         return
                     dialogue.execute(line)
                 except KeyboardInterrupt:
-                    continue  # Ctrl+C clears the line, or ends waiting
+                    continue  # Ctrl+C clears the line
                 except EOFError:
                     return
 
