@@ -1,6 +1,7 @@
 import { Track, indexAt } from "./track.js";
 
 const LIMIT = 5000;  // failures of an agent that are kept
+const REFUSED = "refused, ";  // by the plan: the caller knows, and nothing was lost
 const LABEL = /^\w+, (?=\S)/, PLACE = / \(\S+:\d+\)$/;
 const SAID = /^(?:action|operation) \S+ .*?(?:was aborted|failed)(?: with code -?\d+)?: /;
 
@@ -16,7 +17,7 @@ export class Failures {
     const key = `${agent} ${intention ?? `goal ${id}`}`, known = this.newest.get(key);
     if (state === "failed") {
       if (!why) return null;  // a behaviour of a tree
-      const failure = known?.t === t ? known : { t, agent, intention, ids: new Set(), handled: false };
+      const failure = known?.t === t ? known : { t, agent, intention, ids: new Set(), handled: String(why).startsWith(REFUSED) };
       Object.assign(failure, { goal, why: String(why) }).ids.add(id);
       if (failure !== known) this.of(agent).add(t, failure);
       this.newest.set(key, failure);
