@@ -15,7 +15,6 @@ from typing import Any
 
 from jacaros import Mas
 from jacaros.serving.callers import Caller, RequestError
-from jacaros.serving.goals import OVER
 from jacaros.serving.service import service_of
 
 PROGRAM = """
@@ -36,18 +35,37 @@ def megabytes() -> float:
         return int(file.read().split()[1]) * resource.getpagesize() / 1e6
 
 
-async def give(session: Any, rate: float, seconds: float) -> list[Any]:
-    """Give goals at a rate; every tenth one waits for 200 ms. Return them. What is too much now is given later."""
-    goals: list[Any] = []
-    began = time.perf_counter()
-    while (now := time.perf_counter() - began) < seconds or len(goals) < rate * seconds:
-        with suppress(RequestError):
-            while len(goals) < min(now, seconds) * rate:
-                number = len(goals)
-                name, given = ("add", [number, 1]) if number % 10 else ("pause", [200])
-                goals.append(session.achieve("robot", name, given))
-        await asyncio.sleep(0.01)
-    return goals
+class Load:
+    """Gives goals, and forgets those that have ended.
+
+    Attributes:
+        given, lost: number of goals given, and of those that were not achieved.
+        seconds: from a short goal to its end.
+    """
+
+    def __init__(self, session: Any) -> None:
+        self._session, self._alive = session, list[Any]()
+        self.given = self.lost = 0
+        self.seconds: list[float] = []
+
+    async def give(self, rate: float, seconds: float) -> None:
+        """Give goals at a rate; every tenth one waits for 200 ms. What is too much now is given later."""
+        began, before = time.perf_counter(), self.given
+        while (now := time.perf_counter() - began) < seconds or self.given - before < rate * seconds:
+            with suppress(RequestError):
+                while self.given - before < min(now, seconds) * rate:
+                    name, data = ("add", [self.given, 1]) if self.given % 10 else ("pause", [200])
+                    self._alive.append(self._session.achieve("robot", name, data))
+                    self.given += 1
+            self.forget()
+            await asyncio.sleep(0.01)
+
+    def forget(self) -> None:
+        """Count the goals that have ended."""
+        over = [each for each in self._alive if each.over]
+        self._alive = [each for each in self._alive if not each.over]
+        self.lost += sum(each.state != "achieved" for each in over)
+        self.seconds += [each.ended - each.began for each in over if each.offer.name == "add"]
 
 
 async def main(seconds: float, rate: float, watching: int) -> None:
@@ -69,20 +87,19 @@ async def main(seconds: float, rate: float, watching: int) -> None:
         await asyncio.sleep(1)
         first = (robot.ask("ticks(N)") or {})["N"]
         began = time.perf_counter()
-        goals = await give(session, rate, seconds / 2)
+        load = Load(session)
+        await load.give(rate, seconds / 2)
         middle = megabytes()
-        goals += await give(session, rate, seconds / 2)
+        await load.give(rate, seconds / 2)
         await asyncio.sleep(0.5)
         took = time.perf_counter() - began - 0.5
         ticks = ((robot.ask("ticks(N)") or {})["N"] - first) / (took + 0.5)
-        lost = sum(each.state != "achieved" for each in goals)
-        short = [each.ended - each.began for each in goals if each.state in OVER and each.offer.name == "add"]
-        print(f"{len(goals) / took:.0f} goals/s for {took:.0f} s, {lost} not achieved")
+        load.forget()
+        median, longest = statistics.median(load.seconds) * 1000, max(load.seconds) * 1000
+        print(f"{load.given / took:.0f} goals/s for {took:.0f} s, {load.lost} not achieved")
+        print(f"from a goal to its end: median {median:.2f} ms, longest {longest:.0f} ms")
         print(
-            f"from a goal to its end: median {statistics.median(short) * 1000:.2f} ms, longest {max(short) * 1000:.0f} ms"
-        )
-        print(
-            f"{ticks:.1f} ticks/s of the agent (50 wanted), {changes / took:.0f} changes/s heard by {watching} sessions"
+            f"{ticks:.1f} ticks/s of the agent (50 wanted), {changes / took:.0f} changes/s heard by {watching:g} sessions"
         )
         print(
             f"{middle:.0f} MB in the middle, {megabytes():.0f} MB at the end, kept: {len(service.goals)} goals"

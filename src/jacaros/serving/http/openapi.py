@@ -5,6 +5,7 @@ from typing import Any, Final
 from urllib.parse import quote
 
 from jacaros.agents.language.offers import Offer, Parameter
+from jacaros.serving.arguments import described as data_of_offer
 from jacaros.serving.arguments import schema_of
 from jacaros.version import VERSION
 
@@ -58,19 +59,7 @@ def described(agent: str, offers: Iterable[Offer]) -> Json:
     """Return what an agent offers."""
     found: Json = {"name": agent, **{plural: [] for plural in KINDS.values()}}
     for offer in offers:
-        found[KINDS[offer.what]].append(_described(offer))
-    return found
-
-
-def _described(offer: Offer) -> Json:
-    found: Json = {"name": offer.name, "form": str(offer), "doc": offer.doc, "roles": sorted(offer.roles)}
-    if offer.what in ("goal", "question"):
-        found |= {"arguments": schema_of(offer.inputs), "results": schema_of(_results(offer))}
-    else:
-        found["arguments"] = schema_of(offer.parameters)
-    if offer.what == "goal":
-        found |= {"at_most": offer.at_most, "when_busy": offer.when_busy, "when_left": offer.when_left}
-        found["hints"] = sorted(offer.hints)
+        found[KINDS[offer.what]].append(data_of_offer(offer))
     return found
 
 
