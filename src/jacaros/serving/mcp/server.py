@@ -38,6 +38,8 @@ Context = ServerRequestContext[Any, Any]
 Result = types.CallToolResult
 MOST_SUBSCRIPTIONS = 100
 """Maximum number of beliefs that one client watches."""
+REST = 0.5
+"""Seconds between two notifications of changed beliefs: a hundred watchers must not slow the agents down."""
 INSTRUCTIONS = (
     "The tools give goals to software agents that control robots, ask them, and tell them beliefs. An agent pursues a goal "
     "as its own program says, and may refuse it. The tool of a goal returns when the goal has ended; to stop it earlier, "
@@ -231,6 +233,7 @@ async def _publish(changed: Outbox[str], bus: InMemorySubscriptionBus) -> None:
             else:
                 await bus.publish(ToolsListChanged())
                 await bus.publish(ResourcesListChanged())
+        await asyncio.sleep(REST)
 
 
 async def _notify(changed: Outbox[str], ctx: Context, stop: Callable[[], None]) -> None:
@@ -239,6 +242,7 @@ async def _notify(changed: Outbox[str], ctx: Context, stop: Callable[[], None]) 
             for uri in await changed.take():
                 if uri:
                     await ctx.session.send_resource_updated(uri)
+            await asyncio.sleep(REST)
     finally:
         stop()
 
