@@ -16,7 +16,7 @@ trap 'rm -rf "$scratch"' EXIT
 wheel=$(echo "$folder"/*.whl)
 "$python" -m venv --without-pip "$scratch/venv"
 "$python" -m pip --python "$scratch/venv/bin/python" install --quiet --disable-pip-version-check \
-  --constraint "$root/constraints.txt" "$wheel[behaviour-trees,fleet,foxglove,maps,rosbridge]"
+  --constraint "$root/constraints.txt" "$wheel[behaviour-trees,console,fleet,foxglove,maps,mcp,rosbridge,serve]"
 "$python" -m cyclonedx_py environment --output-reproducible --output-format JSON --output-file "$scratch/sbom.json" \
   --pyproject "$root/pyproject.toml" "$scratch/venv/bin/python"
 # Paths of this machine stay out.

@@ -78,7 +78,7 @@ missing rosbridge "$jacaros" run hello.asl --ros rosbridge --for 1
 missing fleet "$jacaros" run hello.asl --fleet lab
 missing fleet "$jacaros" fleet list lab
 
-install "$wheel[behaviour-trees,fleet,foxglove,maps,rosbridge]"
+install "$wheel[behaviour-trees,console,fleet,foxglove,maps,mcp,rosbridge,serve]"
 "$jacaros" world show house --output house.svg
 "$jacaros" run examples/07_shared_robot/shared_robot.jcm --clock fast --ground-truth truth.jsonl >shared_robot.log
 "$scratch/venv/bin/python" examples/07_shared_robot/check.py truth.jsonl | grep -q '^passed$'
