@@ -77,6 +77,8 @@ missing() {
 missing rosbridge "$jacaros" run hello.asl --ros rosbridge --for 1
 missing fleet "$jacaros" run hello.asl --fleet lab
 missing fleet "$jacaros" fleet list lab
+missing serve "$jacaros" run hello.asl --serve 0 --for 1
+missing mcp "$jacaros" mcp hello.asl
 
 install "$wheel[behaviour-trees,console,fleet,foxglove,maps,mcp,rosbridge,serve]"
 "$jacaros" world show house --output house.svg
