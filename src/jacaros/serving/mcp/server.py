@@ -188,7 +188,8 @@ class McpServer:
     async def _subscribe(self, ctx: Context, params: types.SubscribeRequestParams) -> types.EmptyResult:
         """Notify a client of an earlier version of the protocol of changes of a belief."""
         client, key = self._client_of(ctx), self._key(ctx, params.uri)
-        await self._end_watch(key)
+        for old in [each for each in self._watches if each == key or each[0].left]:
+            await self._end_watch(old)
         own = [each for each in self._watches if each[0] is client]
         if len(own) >= MOST_SUBSCRIPTIONS:
             await self._end_watch(own[0])
