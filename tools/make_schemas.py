@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from jacaros.robots.mapping import fields, operations, properties
+from jacaros.robots.mapping import fields, offers, operations, properties
 from jacaros.robots.mapping.file import ArtifactPart
 from jacaros.robots.plane.pose import Pose
 from jacaros.robots.plane.shapes import Segment
@@ -160,7 +160,9 @@ def mappings() -> Schema:
         "operations": named({"anyOf": [*kinds, listed({"anyOf": kinds})]}),
     }
     artifact = declared(ArtifactPart("", fields.START), **own)
-    several = {**artifact["properties"], "artifacts": named(artifact)}
+    offer = [keys_of(keys, "type") for keys in (offers.OF_ACTION, offers.OF_TOPIC)]
+    of_file = {"offers": named({"anyOf": offer}), "roles": {"anyOf": [TEXT, listed(TEXT)]}}
+    several = {**artifact["properties"], **of_file, "artifacts": named(artifact)}
     return mapping(several)
 
 

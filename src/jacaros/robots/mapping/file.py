@@ -132,6 +132,11 @@ class MappingFile:
     offers: dict[str, OfferPart] = field(default_factory=dict)
     roles: tuple[str, ...] = ()
 
+    @property
+    def interfaces(self) -> tuple[Path, ...]:
+        """The folders with definitions of all its artifacts."""
+        return tuple(dict.fromkeys(each for part in self.artifacts.values() for each in part.interfaces))
+
     def where(self, place: FilePosition) -> str:
         """Format a position for the log."""
         return f"{self.file}:{place.line}"

@@ -71,7 +71,10 @@ class OfferPart:
         return {"goal": goal, "result": set(self.result.names), "fields": set(self.fields.names)}
 
 
-_OF_ACTION, _OF_TOPIC = ("type", "action", "goal", "result", "feedback"), ("type", "topic", "fields")
+OF_ACTION = ("type", "action", "goal", "result", "feedback")
+"""Keys of a goal."""
+OF_TOPIC = ("type", "topic", "fields")
+"""Keys of a belief."""
 
 
 def read_offers(node: YamlNode) -> dict[str, OfferPart]:
@@ -82,7 +85,7 @@ def read_offers(node: YamlNode) -> dict[str, OfferPart]:
 
 def _offer(name: YamlNode, node: YamlNode) -> OfferPart | None:
     is_topic = isinstance(node.value, dict) and "/msg/" in str(node.value.get("type", ""))
-    entries = node.mapping(*(_OF_TOPIC if is_topic else _OF_ACTION), required=("type",))
+    entries = node.mapping(*(OF_TOPIC if is_topic else OF_ACTION), required=("type",))
     if "type" not in entries:
         return None
     type_name = type_written(entries["type"], "msg" if is_topic else "action")

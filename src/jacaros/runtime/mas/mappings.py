@@ -92,7 +92,7 @@ def check_mapping_file(
         each
         for part in mapping.artifacts.values()
         for each in type_problems(part, stored_interfaces(part.interfaces))
-    ] + offer_problems(mapping.offers, stored_interfaces())
+    ] + offer_problems(mapping.offers, stored_interfaces(mapping.interfaces))
     problems += [each for each in uncertain if each.line not in wrong]
     # Another artifact of the robot may have the property; an alias repeats a problem.
     misspelt = [

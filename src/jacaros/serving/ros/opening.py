@@ -20,6 +20,8 @@ def open_door(system: System) -> RosDoor:
     roles: list[str] = []
     for path in files_with_offers(system.deployment, system.options.mappings):
         mapping, problems = load_mapping(path), list[Problem]()
+        for folder in mapping.interfaces:
+            backend.add_interfaces(folder)
         for name, part in mapping.offers.items():
             if (codec := codec_of(part, backend, problems)) is not None:
                 codecs[name] = codec
