@@ -256,7 +256,12 @@ def schema_of(parameters: Sequence[Parameter]) -> dict[str, Any]:
 
 def described(offer: Offer) -> dict[str, Any]:
     """Return what is offered as JSON data, with the JSON schemas of its arguments and results."""
-    found: dict[str, Any] = {"name": offer.name, "doc": offer.doc, "roles": sorted(offer.roles)}
+    found: dict[str, Any] = {
+        "name": offer.name,
+        "form": str(offer),
+        "doc": offer.doc,
+        "roles": sorted(offer.roles),
+    }
     found["arguments"] = schema_of(offer.inputs)
     if offer.what in ("goal", "question"):
         found["results"] = schema_of([each for each in offer.parameters if each.output])

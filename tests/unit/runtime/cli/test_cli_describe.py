@@ -124,6 +124,7 @@ def test_what_agents_offer_is_described(folder: Path, told: Told) -> None:
     goal, belief = json.loads(told("house.jcm", "--json"))["agents"][0]["offers"]
     assert (goal["what"], goal["at_most"], goal["hints"]) == ("goal", 2, ["idempotent"])
     assert goal["arguments"]["properties"]["room"] == {"type": "string", "enum": ["kitchen", "office"]}
+    assert belief["form"] == "battery(level: number 0..100)"
     assert goal["results"]["required"] == ["metres"]
     assert belief["arguments"]["properties"]["level"] == {"type": "number", "minimum": 0, "maximum": 100}
     (folder / "bob.asl").write_text(OFFERS + "+!broken <- .", encoding="utf-8")
