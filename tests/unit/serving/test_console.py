@@ -181,6 +181,19 @@ def test_a_console_remembers_lines(run: ServedRun, screen: OpenScreen) -> None:
         assert terminal.end() == 0
 
 
+def test_without_prompt_toolkit_the_help_installs_it(
+    screen: OpenScreen, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lacking = (
+        "import sys; sys.modules['prompt_toolkit'] = None; from jacaros.runtime.cli.main import main; main()"
+    )
+    monkeypatch.setattr("console_lab.command", lambda *words: [sys.executable, "-c", lacking, *words])
+    terminal = screen("console")
+    terminal.wait_for("error: the console needs prompt_toolkit")
+    terminal.wait_for('= help: pip install "jacaros[console]"')
+    assert terminal.end() == 2
+
+
 # ---- parts
 
 

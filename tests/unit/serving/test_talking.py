@@ -3,6 +3,7 @@
 import json
 import signal
 import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
@@ -56,6 +57,7 @@ def test_exit_codes_distinguish_failed_and_refused_goals(outcome: Outcome) -> No
     assert outcome("achieve", 'deliver("p1", kitchen)')[0] == 0
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no signals for other processes")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_cancels_the_goal(run: ServedRun, number: signal.Signals) -> None:
     process = subprocess.Popen(command("achieve", "search"), stderr=subprocess.PIPE, text=True)
