@@ -8,7 +8,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Final
 
 from jacaros.agents.mind.rules.failure_reason import shown_goal
-from jacaros.agents.mind.state.intention import EVENT_GOAL, GOAL, PLAN
+from jacaros.agents.mind.state.intention import EVENT_GOAL, EVENT_INTENTION, GOAL, PLAN, Intention
 from jacaros.agents.mind.state.plan import Plan
 from jacaros.agents.mind.state.triggers import Goal
 from jacaros.runtime.clock import real_time
@@ -28,12 +28,12 @@ class _Busy:
 
     Attributes:
         cycles, began: its reasoning cycles, and the seconds of a steady clock, at the first look.
-        goals: the goals that it was seen to pursue.
+        goals: the goals that it was seen to pursue, see `_goals`.
     """
 
     cycles: int
     began: float
-    goals: set[str] = field(default_factory=set)
+    goals: set[tuple[str, int]] = field(default_factory=set)
 
 
 class EndlessLoops:
@@ -57,7 +57,7 @@ class EndlessLoops:
             self._busy[name] = _Busy(mind.counts.cycles, real_time())
         busy = self._busy[name]
         now = set(_goals(mind))
-        for goal in sorted(now & busy.goals):
+        for goal, _ in sorted(now & busy.goals):
             place = goal.rpartition(" (")[2]
             if place not in self._told:
                 self._told.add(place)
@@ -70,16 +70,29 @@ class EndlessLoops:
         busy.goals |= now
 
 
-def _goals(mind: "Mind") -> Iterator[str]:
-    """Yield the goals that an agent pursues or has just posted, with the places of their plans."""
+def _goals(mind: "Mind") -> Iterator[tuple[str, int]]:
+    """Yield the goals that an agent pursues or has just posted, with the places of their plans.
+
+    Callers outside may give equal goals again and again: theirs come with the number of the intention, others with 0.
+    """
     for intention in islice(mind.intentions, LOOKED_AT):
         if intention.frames:
             frame = intention.frames[-1]
-            yield from _placed(frame[GOAL], (frame[PLAN],))
+            for goal in _placed(frame[GOAL], (frame[PLAN],)):
+                yield goal, _number(intention)
     for event in islice(mind.events, LOOKED_AT):
-        goal = event[EVENT_GOAL]
-        if goal[0].kind:
-            yield from _placed(goal, mind.library.relevant(goal[0]))
+        if event[EVENT_GOAL][0].kind:
+            for goal in _placed(event[EVENT_GOAL], mind.library.relevant(event[EVENT_GOAL][0])):
+                yield goal, _number(event[EVENT_INTENTION])
+
+
+def _number(intention: Intention | None) -> int:
+    given = (
+        intention is not None
+        and intention.frames
+        and intention.frames[0][GOAL][0].functor.namespace == "jacaros"
+    )
+    return intention.id if intention is not None and given else 0
 
 
 def _placed(goal: Goal, plans: Sequence[Plan]) -> Iterator[str]:

@@ -4,6 +4,8 @@ from pathlib import Path
 
 import pytest
 
+import jacaros
+from jacaros import Mas
 from jacaros.runtime.mas.scheduler import Scheduler
 from jacaros.testing import run_project
 
@@ -40,3 +42,17 @@ def _errors(folder: Path, program: str) -> list[str]:
     path = folder / "a.asl"
     path.write_text(program, encoding="utf-8")
     return run_project(path, seconds=0.005).errors
+
+
+def test_equal_goals_of_callers_are_no_loop() -> None:
+    logs: list[str] = []
+
+    async def main() -> None:
+        async with Mas(seed=1, on_log=lambda text, level: logs.append(text)) as mas:
+            bob = mas.add_agent("bob", "+!work <- for (.range(I, 1, 30)) { X = I }.")
+            for _ in range(300):
+                bob.achieve("work")
+            await mas.until_idle()
+
+    jacaros.run(main(), clock="fast")
+    assert [each for each in logs if "without waiting or" in each] == []
