@@ -57,7 +57,9 @@ class Guard:
         headers = Headers(scope=scope)
         hosts = headers.getlist("host")
         if not self._hosts.knows_host(hosts):
-            raise RequestError("foreign_host", "the header Host names another machine")
+            raise RequestError(
+                "foreign_host", "unknown name in the header Host; to serve under it: --serve NAME:PORT"
+            )
         if not self._hosts.knows_origin(headers.getlist("origin"), hosts[0]):
             raise RequestError("foreign_origin", "the header Origin names another site")
         kind, _, token = headers.get("authorization", "").partition(" ")

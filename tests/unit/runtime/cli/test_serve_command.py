@@ -85,6 +85,6 @@ def test_a_run_serves_and_leaves_a_private_file_until_its_end(tmp_path: Path) ->
 def test_a_run_for_other_machines_warns_without_tls(folder: Path, outcome: Outcome) -> None:
     code, _, errors = outcome("run", "hello.asl", "--serve", "0.0.0.0:0", "--until-idle")
     assert code == 0
-    assert "warning: whoever reads the traffic to 0.0.0.0 can use its tokens" in errors
+    assert "warning: the connection is not encrypted: others who read the traffic to 0.0.0.0" in errors
     assert "help: add --tls-cert FILE --tls-key FILE" in errors
     assert socket.gethostname() in errors

@@ -338,7 +338,9 @@ def test_fuzzed_requests_are_answered_clearly_and_change_nothing(count: int) -> 
                 }
                 response = await client.request(method, path, headers=allowed, content=body)
                 told = f"{method} {path} {body[:200]!r}: {response.text[:300]}"
-                if response.status_code >= 300:
+                if response.status_code == 307:  # a slash at the end
+                    assert response.headers["location"].startswith(lab.door.url), told
+                elif response.status_code >= 300:
                     assert response.status_code < 500, told
                     if method != "HEAD":
                         problem(response, response.status_code, response.json()["code"])
