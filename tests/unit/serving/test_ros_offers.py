@@ -7,6 +7,7 @@ import pytest
 import jacaros
 from jacaros import Mas
 from jacaros.robots.mapping.file import MappingError, read_mapping
+from jacaros.robots.ros.action import GoalStatus
 from jacaros.runtime.cli.main import call
 from jacaros.runtime.mas.mappings import check_mapping_file, files_with_offers
 from jacaros.serving.ros.opening import open_door
@@ -99,6 +100,30 @@ def test_a_mapping_must_fit_the_offer(offer: str, warning: str, tmp_path: Path) 
     warnings = [each for each in log if "[ros] warning" in each]
     assert len(warnings) == bool(warning)
     assert warning in "".join(warnings)
+
+
+def test_feedback_and_results_that_do_not_fit_their_type_are_reported(tmp_path: Path) -> None:
+    file = tmp_path / "go.yaml"
+    wrong = "    feedback: {number_of_recoveries: $doing}\n    result: {error_code: $where}\n"
+    file.write_text(GO + wrong)
+    log: list[str] = []
+
+    async def main() -> None:
+        async with Mas(world="none", mappings=(str(file),), on_log=lambda text, _: log.append(text)) as mas:
+            program = (
+                "{ offer(goal, go(x(number), y(number), where(out(atom)))) } +!go(_, _, lab) <- .wait(1000)."
+            )
+            mas.add_agent("bob", program)
+            open_door(mas.system)
+            client = mas.system.ros.companion("client").action_client(
+                "bob/go", "nav2_msgs/action/NavigateToPose"
+            )
+            outcome = await (await client.send({}, timeout=5)).outcome()
+            assert outcome.status is GoalStatus.ABORTED
+            assert "field error_code is uint16" in outcome.text
+
+    jacaros.run(main(), clock="fast")
+    assert sum("does not fit nav2_msgs/action/NavigateToPose" in each for each in log) == 1
 
 
 def test_a_file_with_errors_stops_the_run(tmp_path: Path) -> None:

@@ -70,7 +70,7 @@ class RosDoor:
         self._codecs, self._roles = dict(codecs or {}), frozenset(roles)
         self._service = service_of(system)
         self._sessions: dict[str, Session] = {}
-        self._pursuits = Pursuits(system.clock.now)
+        self._pursuits = Pursuits(system.clock.now, self.warn)
         self._looking: Timer | None = None
         self._agents: dict[str, AgentEndpoints] = {}
         for name in self.session(ANONYMOUS).agents():

@@ -24,12 +24,19 @@ class Pursuit:
         goal: the goal of the agent.
         form: writes the feedback.
         abandoned: returns whether the action has no client left.
+        warn: logs a warning.
     """
 
     def __init__(
-        self, served: ServerGoal, goal: RequestedGoal, form: GoalForm, abandoned: Callable[[], bool]
+        self,
+        served: ServerGoal,
+        goal: RequestedGoal,
+        form: GoalForm,
+        abandoned: Callable[[], bool],
+        warn: Callable[[str], None],
     ) -> None:
         self._served, self.goal, self._form, self._abandoned = served, goal, form, abandoned
+        self._warn, self._misfit = warn, False
         self._last: Fields | None = None
         self._sent_at = 0.0
         self._left_at: float | None = None
@@ -49,12 +56,16 @@ class Pursuit:
         """Send feedback if it differs from the last one, or that one is old: clients ignore what comes too early."""
         goal = self.goal
         doing = "" if goal.over or goal.state in (PENDING, WAITING) else goal.doing()
-        if not doing:
+        if not doing or self._misfit:
             return
-        fields = self._form.feedback(doing, goal.progress, goal.note)
-        if fields != self._last or now - self._sent_at >= REPEATING:
-            self._last, self._sent_at = fields, now
-            self._served.feedback(fields)
+        try:
+            fields = self._form.feedback(doing, goal.progress, goal.note)
+            if fields != self._last or now - self._sent_at >= REPEATING:
+                self._last, self._sent_at = fields, now
+                self._served.feedback(fields)
+        except (MessageMismatch, *MISMATCH) as error:
+            self._misfit = True
+            self._warn(f"the feedback of !{goal.written} does not fit {self._form.type_name}: {error}")
 
 
 class Pursuits:
@@ -62,10 +73,11 @@ class Pursuits:
 
     Args:
         now: returns the time.
+        warn: logs a warning.
     """
 
-    def __init__(self, now: Callable[[], float]) -> None:
-        self._now = now
+    def __init__(self, now: Callable[[], float], warn: Callable[[str], None]) -> None:
+        self._now, self._warn = now, warn
         self._known: dict[str, Pursuit] = {}
 
     def __len__(self) -> int:
@@ -95,7 +107,7 @@ class Pursuits:
             goal = form.give(session, served.request)
         except RequestError as error:
             raise Abort(error.message, form.refusal(error)) from None
-        self._known[goal.id] = pursuit = Pursuit(served, goal, form, abandoned)
+        self._known[goal.id] = pursuit = Pursuit(served, goal, form, abandoned, self._warn)
         goal.watcher = lambda: pursuit.report(self._now())
         try:
             await _ended(served, goal, session)
@@ -118,7 +130,7 @@ async def _ended(served: ServerGoal, goal: RequestedGoal, session: Session) -> N
 def _outcome(served: ServerGoal, goal: RequestedGoal, form: GoalForm) -> Fields | None:
     try:
         fields = form.result(goal)
-    except (MessageMismatch, *MISMATCH) as error:
+    except MISMATCH as error:
         raise Abort(f"the result does not fit the type of the action: {error}") from None
     if goal.state == ACHIEVED or served.cancel_requested:
         return fields
