@@ -1,12 +1,9 @@
 """A goal that repeats without waiting or acting is reported once; long computations are not."""
 
-import asyncio
 from pathlib import Path
 
 import pytest
 
-import jacaros
-from jacaros import Mas
 from jacaros.runtime.mas.scheduler import Scheduler
 from jacaros.testing import run_project
 
@@ -43,22 +40,3 @@ def _errors(folder: Path, program: str) -> list[str]:
     path = folder / "a.asl"
     path.write_text(program, encoding="utf-8")
     return run_project(path, seconds=0.005).errors
-
-
-def test_equal_goals_of_callers_are_no_loop(monkeypatch: pytest.MonkeyPatch) -> None:
-    # 120 goals of 10 cycles take more than a round, so the agent is never idle, and less than two looks.
-    monkeypatch.setattr(Scheduler, "TURNS_UNTIL_LOOK", 100)
-    logs: list[str] = []
-
-    async def main() -> None:
-        async with Mas(seed=1, on_log=lambda text, level: logs.append(text)) as mas:
-            bob = mas.add_agent("bob", "+!work <- for (.range(I, 1, 3)) { X = I }.")
-
-            async def caller() -> None:
-                for _ in range(30):
-                    await bob.achieve("work")
-
-            await asyncio.gather(*(caller() for _ in range(120)))
-
-    jacaros.run(main(), clock="fast")
-    assert [each for each in logs if "without waiting or" in each] == []
