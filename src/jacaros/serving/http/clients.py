@@ -127,7 +127,7 @@ class Client:
 
         try:
             for agent, name in beliefs:
-                ends.append(_watch(session, stream, agent, name))
+                ends.append(self._watch(session, stream, agent, name))
         except RequestError:
             stop()
             raise
@@ -137,6 +137,15 @@ class Client:
             if not goal.over:
                 self._events.put(({"event": "goal", **goal.data()}, stream))
         return stop
+
+    def _watch(self, session: Session, stream: Stream, agent: str, name: str) -> Callable[[], None]:
+        subject = "belief", agent, name, id(stream)
+
+        def tell(facts: Any) -> None:
+            event = {"event": "belief", "agent": agent, "name": name, "beliefs": facts}
+            self._events.put((event, stream), subject)  # not to the stream, which would be a wake-up for each
+
+        return session.watch(agent, name, tell)
 
     def _hear(self, event: Event) -> None:
         self._events.put((event, None))
@@ -171,16 +180,10 @@ class _Presence:
         self._client.went()
 
 
-def _watch(session: Session, stream: Stream, agent: str, name: str) -> Callable[[], None]:
-    def tell(facts: Any) -> None:
-        event = {"event": "belief", "agent": agent, "name": name, "beliefs": facts}
-        stream.put(encoded(event), ("belief", agent, name))
-
-    return session.watch(agent, name, tell)
-
-
 def _subject(event: Event) -> tuple[str, ...] | None:
     """Return of what only the newest event matters: the progress of a goal, but not its states."""
+    if event["event"] == "belief":
+        return "belief", event["agent"], event["name"]
     if event["event"] != "goal" or event["state"] in OVER:
         return None
     return "goal", event["id"], event["state"]
