@@ -1,4 +1,9 @@
-"""The directive ``offer``, see `jacaros.agents.language.offers`."""
+"""The directive ``offer``, see `jacaros.agents.language.offers`.
+
+>>> from jacaros.agents.language.loader import parse_term
+>>> print(offer_of(parse_term("offer(tell, closed(room([lab, hall])))")))
+closed(room: lab | hall)
+"""
 
 from collections.abc import Iterator
 from dataclasses import replace

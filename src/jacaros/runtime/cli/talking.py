@@ -40,7 +40,7 @@ def client_of(url: str | None, token: str | None) -> Client:
     """Return a client of the system that the options name.
 
     Raises:
-        UsageError: there is none, there are several, or the token is missing.
+        UsageError: no system is running, several are, or the token is missing.
     """
     known = running.services()
     if url is not None:
@@ -255,7 +255,7 @@ def console(system: str | None, options: tuple[str, ...], token: str | None) -> 
     """Talk to the agents of a running system in AgentSpeak, or run FILE and talk to its agents.
 
     `!goal`, `?question`, `+belief` and `-belief` go to the agent that offers them; `help` lists what else you can write.
-    Without a terminal, lines of the standard input are executed one after the other; the exit code is 1 if one fails.
+    Without a terminal, lines of the standard input are executed in turn; the exit code is 1 if one fails.
     """  # fmt: skip
     from jacaros.serving.shell.console import Console, is_interactive  # here: few commands are consoles
 

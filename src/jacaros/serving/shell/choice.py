@@ -25,7 +25,7 @@ Written = Callable[[str, str, str], str]
 
 
 def name_in(text: str) -> str:
-    """Return the functor of a literal; empty if there is none."""
+    """Return the functor of a literal; empty for another term."""
     found = _NAME.match(text)
     return found[1].strip("'") if found else ""
 

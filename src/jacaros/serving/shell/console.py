@@ -21,7 +21,7 @@ LEAVING = 2.0
 
 
 class Console:
-    """Reads lines of the standard input: with a prompt in a terminal, otherwise one after the other.
+    """Reads lines of the standard input: with a prompt in a terminal, otherwise in turn.
 
     In a script, each goal has ended before the next line is read.
     """

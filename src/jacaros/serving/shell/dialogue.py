@@ -42,7 +42,7 @@ class Dialogue:
     Args:
         client: the system.
         show: prints a line.
-        waits: wait for the end of each goal, as in a script. Otherwise somebody else shows `event`.
+        waits: wait for the end of each goal, as in a script. Otherwise the caller shows `event`.
     """
 
     def __init__(self, client: Client, show: Callable[[str], None], waits: bool) -> None:
