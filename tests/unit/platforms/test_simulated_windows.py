@@ -279,7 +279,8 @@ def test_no_posix_name_is_evaluated_at_import() -> None:
         "root = pathlib.Path(sys.argv[1])\n"
         "for file in sorted((root / 'jacaros').rglob('*.py')):\n"
         "    name = '.'.join(file.relative_to(root).with_suffix('').parts).removesuffix('.__init__')\n"
-        "    if not name.startswith(('jacaros.robots.ros.drivers.', 'jacaros.__main__')):\n"
+        # The SDK of MCP imports modules that only a real Windows has.
+        "    if not name.startswith(('jacaros.robots.ros.drivers.', 'jacaros.serving.mcp.', 'jacaros.__main__')):\n"
         "        importlib.import_module(name)\n"
     )
     subprocess.run(
