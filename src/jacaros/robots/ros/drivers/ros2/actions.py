@@ -53,6 +53,8 @@ REPEATING, REPEATING_LAST = 1.0, 0.04
 """Seconds after which an unanswered request is repeated: while the client is open, and a last one to cancel."""
 CANCEL_DEPTH = 3
 """Length of the queue of requests to cancel; in older versions of Fast DDS, a full queue makes lost ones noticed."""
+FEW_GOALS, STATUS_TOGETHER = 20, 0.2
+"""Number of goals above which changes of status are published together, this number of seconds later: a message has all."""
 FEEDBACK_WAITING = 100
 """Number of feedback messages that may wait for the loop; the oldest is dropped first."""
 
@@ -92,7 +94,7 @@ class Ros2ActionServer:
         self._impl: Any = node.schema.message_class(type_name).Impl
         self._under_way = ServedGoals(node.clock, node.factory, name, type_name, execute, policy, node.log)
         self._goals: dict[str, _ServedGoal] = {}
-        self._closed = False
+        self._closed = self._status_soon = False
         rcl, impl = node.rcl, self._impl
         self._feedback: Any = rcl.create_publisher(
             impl.FeedbackMessage, name + FEEDBACK, profile(FEEDBACK_QUALITY)
@@ -116,6 +118,8 @@ class Ros2ActionServer:
         if self._closed:
             return
         self._under_way.close()
+        if self._status_soon:
+            self._send_status()
         self._closed = True
         for service in self._services:
             service.close(late=True)
@@ -197,6 +201,15 @@ class Ros2ActionServer:
             respond(goal.response)
 
     def _publish_status(self) -> None:
+        """Publish the status of all goals: at once while they are few, otherwise several changes together."""
+        if len(self._goals) <= FEW_GOALS:
+            self._send_status()
+        elif not self._status_soon:
+            self._status_soon = True
+            self._node.loop.call_later(STATUS_TOGETHER, self._send_status)
+
+    def _send_status(self) -> None:
+        self._status_soon = False
         if self._closed or self._node.ended:
             return
         listed = [GoalStatus(goal_info=goal.info, status=goal.status) for goal in self._goals.values()]
