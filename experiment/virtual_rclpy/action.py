@@ -40,6 +40,9 @@ class ClientGoalHandle:
 class ActionClient:
     """Sends goals of one action."""
 
+    closed = False
+    """Whether the graph may take it for gone: it lives as long as the program."""
+
     def __init__(self, node: Node, action_type: Interface, action_name: str) -> None:
         self.graph = node.graph
         self.name = node.backend.resolve(action_name)

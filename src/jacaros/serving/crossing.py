@@ -47,8 +47,9 @@ class Crossing:
         """
         done: Future[T] = Future()
         self.post(partial(_call, function, args, done))
+        limit = asyncio.timeout(PATIENCE)
         try:
-            async with asyncio.timeout(PATIENCE) as limit:
+            async with limit:
                 return await asyncio.wrap_future(done)
         except TimeoutError:
             if not limit.expired():

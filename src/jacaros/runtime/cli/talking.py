@@ -82,7 +82,7 @@ def _request(
         raise usage_error(
             f"expected [AGENT] and one text, found {len(words)} words", f"quote the text: {command}"
         )
-    text = words[-1].strip().removesuffix(".")
+    text = "".join(words[-1:]).strip().removesuffix(".")
     text = text[1:].strip() if text[:1] in tuple(signs) else text
     with _requests():
         offers = client.offers()

@@ -35,8 +35,9 @@ class OfferCompleter(Completer):
     def __init__(self, dialogue: Dialogue) -> None:
         self._dialogue = dialogue
 
-    def get_completions(self, document: Document, _: CompleteEvent) -> Iterator[Completion]:
+    def get_completions(self, document: Document, complete_event: CompleteEvent) -> Iterator[Completion]:
         """Yield what the text before the cursor may become."""
+        del complete_event
         text = document.text_before_cursor.lstrip()
         if "(" in text:
             yield from self._values(text)
