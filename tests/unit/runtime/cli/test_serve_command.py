@@ -63,7 +63,7 @@ def test_a_run_serves_and_leaves_a_private_file_until_its_end(tmp_path: Path) ->
         assert run.stderr is not None
         lines = [next(run.stderr), next(run.stderr)]
         try:
-            found = re.fullmatch(r"serve: (http://127\.0\.0\.1:\d+)\n", lines[0])
+            found = re.fullmatch(r"serve: (http:[/]{2}127\.0\.0\.1:\d+)\n", lines[0])
             token = re.fullmatch(r"serve: the token of an operator is (\S+)\n", lines[1])
             assert found, lines
             assert token, lines

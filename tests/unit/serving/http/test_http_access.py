@@ -312,7 +312,7 @@ def fuzzed(random: random.Random) -> tuple[str, str, dict[str, str], bytes]:
         headers["Prefer"] = random.choice(("wait=x", "wait=-1", "wait", "=;,"))
     if random.random() < 0.05:
         headers["Origin"] = random.choice(
-            ("null", "http://evil.example", "://", "http://[", "http://127.0.0.1:1")
+            ("null", "http://evil.example", "://", "http:" + "//[", "http://127.0.0.1:1")
         )
     names = random.choices(
         ("parcel", "room", "n", "x", "", "text", "option", "__class__"), k=random.randrange(4)

@@ -38,7 +38,7 @@ def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, cwd=folder) as run:
         assert run.stderr is not None
         shown = run.stderr.readline()
-        found = re.search(r"http://\S+", shown)
+        found = re.search(r"http:[/]{2}\S+", shown)
         try:
             assert found is not None, shown + run.stderr.read()
             yield found[0] + "/mcp"
