@@ -154,7 +154,7 @@ def test_a_thread_that_does_not_return_does_not_hold_the_end_up(folder: Path, cl
     program = """!g. !end.
         +!g <- makeArtifact("a", "artifacts.Endless", [], A); focus(A); +ready; thread.
         +!end : ready <- .stopMAS(0, 3).
-        +!end <- !end."""
+        +!end <- !end.  // jacaros: allow loop-without-wait"""
     call = command(folder, program, "--clock", clock)
     ended = subprocess.run(call, cwd=folder, capture_output=True, text=True, timeout=60, check=False)
     assert ended.returncode == 3

@@ -33,6 +33,8 @@ robots: [{{name: r, pose: {{x: 1, y: 1, yaw_degrees: 0}}}}]
 """
 MAPPING = f'artifacts: {{"{JSON_EVIL}": {{properties: {{"{JSON_EVIL}": {{topic: "/x{JSON_EVIL}"}}}}}}}}\n'
 
+NOWHERE = ("--url", "http://127.0.0.1:1", "--token", "0123456789abcdef")
+
 RUNS: dict[str, list[list[str]]] = {
     "run": [["run", "a.asl", "--clock", "fast", "--world", "none", "--for", "2"], ["run", f"b{EVIL}.asl"]],
     "test": [["test", "tests.asl"], ["test", "-v", "tests.asl"]],
@@ -64,6 +66,11 @@ RUNS: dict[str, list[list[str]]] = {
     ],
     "demo": [["demo", EVIL]],
     "mcp": [["mcp", EVIL]],
+    "achieve": [["achieve", EVIL, *NOWHERE], ["achieve", EVIL, "go", *NOWHERE]],
+    "ask": [["ask", EVIL, *NOWHERE], ["ask", "p(X)", "--url", EVIL, "--token", EVIL]],
+    "tell": [["tell", EVIL, *NOWHERE]],
+    "events": [["events", EVIL, *NOWHERE], ["events", "--belief", EVIL, *NOWHERE]],
+    "console": [["console", EVIL], ["console", f"http://127.0.0.1:1/{EVIL}"]],
     "version": [["version", EVIL]],
 }
 
