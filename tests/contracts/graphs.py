@@ -5,14 +5,12 @@ import contextlib
 import json
 import os
 import queue
-import re
 import signal
 import subprocess
 import sys
 import threading
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import IO, Any, cast
 
 import peer as peer_module
@@ -113,7 +111,6 @@ class ProcessPeer:
         for reader in self._readers:
             reader.start()
         self._number = 0
-        self.shared_memory: set[str] = set()
 
     def __getattr__(self, command: str) -> Callable[..., Any]:
         if command.startswith("_"):
@@ -121,7 +118,6 @@ class ProcessPeer:
         return lambda *args, **kwargs: self._do(command, args, kwargs)
 
     def signal(self, number: signal.Signals) -> None:
-        self._note_shared_memory()
         self._process.send_signal(number)
 
     def wait(self) -> int:
@@ -138,7 +134,6 @@ class ProcessPeer:
         """Have the peer leave the graph and end; kill it when it does not, and say what it said."""
         problem: BaseException | None = None
         if not self.is_over():
-            self._note_shared_memory()
             try:
                 self._do("close", (), {})
                 self._stdin.close()
@@ -185,28 +180,6 @@ class ProcessPeer:
     def _read_errors(self) -> None:
         self.errors.extend(self._stderr)
 
-    def _note_shared_memory(self) -> None:
-        """Remember the files that Fast DDS made for this process; it leaves them behind when killed."""
-        self.shared_memory |= shared_memory(self._process.pid)
-
-
-def shared_memory(process: int | str) -> set[str]:
-    """Files in shared memory that Fast DDS has made for a process; 2 calls them fastrtps_…, 3 fastdds_…"""
-    try:
-        maps = Path(f"/proc/{process}/maps").read_text()
-    except OSError:  # it has ended, or belongs to another user
-        return set()
-    return set(re.findall(r"/dev/shm/(?:sem\.)?fast(?:rtps|dds)_\S+", maps))
-
-
-def in_use() -> set[str]:
-    """Such files of all living processes: one port is common to all domains of the machine."""
-    used: set[str] = set()
-    for folder in Path("/proc").iterdir():
-        if folder.name.isdigit():
-            used |= shared_memory(folder.name)
-    return used
-
 
 class InProcesses:
     """A real ROS graph with a process for each node."""
@@ -217,7 +190,6 @@ class InProcesses:
         self.kind = kind
         self.environment = environment
         self._peers: list[ProcessPeer] = []
-        self._leftovers: set[str] = set()
 
     def peer(
         self, name: str, namespace: str = "", start: bool = True, flags: str = "", **options: Any
@@ -228,10 +200,6 @@ class InProcesses:
         if start:
             made.start()
         return made
-
-    def note_leftovers(self, files: set[str]) -> None:
-        """Have files in shared memory removed at the end that a process of the test's own leaves behind."""
-        self._leftovers |= files
 
     def node_of(self, made: Any) -> str:
         """The node as which others see a peer."""
@@ -254,10 +222,7 @@ class InProcesses:
 
     def dispose(self, made: ProcessPeer) -> None:
         self._peers.remove(made)
-        try:
-            made.dispose()
-        finally:
-            self._leftovers |= made.shared_memory
+        made.dispose()
         assert made.stray_output == [], f"standard output belongs to the agents: {made.stray_output}"
 
     def close(self) -> None:
@@ -267,6 +232,4 @@ class InProcesses:
                 self.dispose(made)
             except AssertionError as problem:
                 problems.append(str(problem))
-        for path in self._leftovers - in_use():
-            Path(path).unlink(missing_ok=True)
         assert not problems, "\n".join(problems)

@@ -82,7 +82,11 @@ def client(graph: Any, *arguments: str) -> "subprocess.Popen[str]":
 
 def heard(process: "subprocess.Popen[str]") -> list[dict[str, Any]]:
     """What a client has printed at its end; Fast DDS 2 may report something in between."""
-    lines = process.communicate(timeout=PATIENCE)[0].splitlines()
+    try:
+        lines = process.communicate(timeout=2 * PATIENCE)[0].splitlines()
+    except subprocess.TimeoutExpired:
+        process.kill()
+        raise AssertionError(f"the client does not end; it said {process.communicate()[0]}") from None
     return [json.loads(line) for line in lines if line.startswith("{")]
 
 
@@ -108,9 +112,11 @@ def test_a_native_client_cancels(graph: Any, agents: Agents) -> None:
 def test_a_goal_whose_only_client_is_killed_is_cancelled(graph: Any, agents: Agents) -> None:
     """Its offer says so. Fast DDS notices after twenty seconds that a process was killed."""
     process = client(graph, f"/{agents.agent}/guard", "")
-    agents.wait_for("guarding")
-    process.kill()
-    process.communicate()
+    try:
+        agents.wait_for("guarding")
+    finally:
+        process.kill()
+        process.communicate()
     agents.wait_for("tidied")
 
 

@@ -30,7 +30,8 @@ run(main, WallClock())
 
 
 def test_logs_of_the_middleware_go_to_standard_error(domain: dict[str, str]) -> None:
-    done = run_program(PROGRAM, domain | {"RCUTILS_LOGGING_USE_STDOUT": "1"})
+    usual = {"RCUTILS_LOGGING_USE_STDOUT": "1", "FASTDDS_BUILTIN_TRANSPORTS": "DEFAULT"}
+    done = run_program(PROGRAM, domain | usual)
     for name in re.findall(r"segment (fast(?:rtps|dds)_\w+)", done.stderr + done.stdout):
         Path("/dev/shm", name).unlink(missing_ok=True)  # the empty file that it could not enlarge
     assert done.returncode == 0, done.stderr

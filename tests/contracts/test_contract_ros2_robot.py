@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from graphs import shared_memory
 
 from jacaros.robots.ros.errors import GoalRejected, ParameterRefused, ParameterUnknown, ServerLost
 
@@ -32,17 +31,14 @@ def running(graph: Any, mode: str) -> Iterator[subprocess.Popen[bytes]]:
         stderr=subprocess.DEVNULL,
     )
     assert process.stdout is not None
-    files: set[str] = set()
     try:
         while (line := process.stdout.readline()) != b"ready\n":
             assert line, "the plain node ended"
-        files = shared_memory(process.pid)
         yield process
     finally:
         process.kill()  # plain nodes sometimes miss other signals
         process.wait()
         process.stdout.close()
-        graph.note_leftovers(files)
 
 
 def asked(graph: Any, *arguments: str) -> list[str]:

@@ -11,8 +11,6 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import IO
 
-from graphs import in_use, shared_memory
-
 from jacaros.robots.world.data.ground_truth import GroundTruth
 
 PATIENCE = 150.0
@@ -55,7 +53,6 @@ class Program:
         ]
         for reader in self._readers:
             reader.start()
-        self._shared_memory: set[str] = set()
 
     @property
     def process(self) -> int:
@@ -78,8 +75,6 @@ class Program:
             "later than earlier ones",
             "no other node is in the ROS",
             "[ros] /clock found",
-            # DDS meets shared memory of a process that another test has killed, and takes the network instead.
-            "RTPS_TRANSPORT_SHM",
         )
         return [line for line in self.errors if not any(text in line for text in late)]
 
@@ -107,7 +102,6 @@ class Program:
 
     def signal(self, number: signal.Signals) -> float:
         """Send a signal; when that was, in seconds since the Unix epoch."""
-        self._note_shared_memory()
         now = time.time()
         self._process.send_signal(number)
         return now
@@ -136,16 +130,10 @@ class Program:
         for stream in (self._process.stdout, self._process.stderr):
             assert stream is not None
             stream.close()
-        for path in self._shared_memory - in_use():
-            Path(path).unlink(missing_ok=True)
 
     def _story(self, beginning: str) -> str:
         output = "\n".join(["--- output:", *self.lines, "--- errors:", *self.errors])
         return f"{beginning}\n{' '.join(map(str, self._process.args))}\n{output}"  # type: ignore[arg-type]
-
-    def _note_shared_memory(self) -> None:
-        """Remember the files that Fast DDS made for this process; it leaves them behind when killed."""
-        self._shared_memory |= shared_memory(self._process.pid)
 
 
 def read(stream: IO[str], lines: list[str]) -> None:

@@ -118,6 +118,12 @@ class Page:
         await self.call("Page.navigate", url=address.as_uri() if isinstance(address, Path) else address)
         await asyncio.wait_for(self._loaded.wait(), PATIENCE)
 
+    async def reload(self) -> None:
+        """Load the page again, and wait until it is loaded: an expression in between would lose its page."""
+        self._loaded.clear()
+        await self.call("Page.reload")
+        await asyncio.wait_for(self._loaded.wait(), PATIENCE)
+
     async def evaluate(self, expression: str) -> Any:
         """Return the value of an expression of JavaScript, a promise's when it has one."""
         answer = await self.call(

@@ -111,7 +111,7 @@ async def test_curves_are_chosen_where_numbers_are_shown_and_remembered() -> Non
             "a:pose.1 1.5",
             "a:pose.3 7",
         ]
-        await page.evaluate("location.reload()")
+        await page.reload()
         await page.wait_for("document.querySelectorAll('.chip').length === 4")
 
 

@@ -66,7 +66,7 @@ async def test_a_breakpoint_on_a_line_hits_and_shows_the_line(page) -> None:
     await page.wait_for("document.querySelector('.debug-state').innerText.includes('breakpoint')")
     await page.wait_for("document.querySelector('.code-line.held.current')")
     assert await page.texts(".popover summary") == ["Breakpoints (1)"]
-    await page.evaluate("location.reload()")
+    await page.reload()
     await page.wait_for("document.querySelector('.popover summary')?.innerText === 'Breakpoints (1)'")
     await page.click(".popover summary")
     await page.click(".breakpoints .act")
@@ -126,7 +126,7 @@ async def test_the_console_asks_adds_and_removes_and_remembers(page) -> None:
     assert await page.evaluate("document.activeElement.value") == "+ready"
 
 
-@on_the_page
+@browsing("!live.\n+!live <- .wait({+never}).", ".intention")
 async def test_a_goal_is_dropped_at_its_card(page) -> None:
     await page.click("[aria-label='Drop !live']")
     await page.wait_for("!document.querySelector('.intention')")

@@ -10,6 +10,7 @@ export class Divider {
     Object.assign(this, { before, after, name });
     this.bar = element("div", "divider");
     this.bar.tabIndex = 0;
+    this.bar.hidden = true;  // until the division is the one that you chose
     for (const [key, value] of Object.entries({ "role": "separator", "aria-label": name, "aria-controls": after.id, "aria-valuemin": LEAST, "aria-valuemax": MOST })) {
       this.bar.setAttribute(key, String(value));
     }
