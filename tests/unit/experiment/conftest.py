@@ -3,4 +3,5 @@
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[3] / "experiment"))
+EXPERIMENT = Path(__file__).parents[3] / "experiment"
+sys.path[:0] = [str(EXPERIMENT), str(EXPERIMENT / "study")]
