@@ -32,10 +32,14 @@ def listening_socket(what: str, address: str, port: int, help: str, backlog: int
     """
     family = socket.AF_INET6 if ":" in address else socket.AF_INET
     try:
-        return socket.create_server((address, port), family=family, backlog=backlog)
+        found = socket.create_server((address, port), family=family, backlog=backlog)
     except (OSError, OverflowError) as error:
         why = error.strerror if isinstance(error, OSError) else "the port must be in 0 to 65535"
         raise UsageError(f"error: cannot serve {what} at {address}:{port}: {why}\n  = help: {help}") from None
+    # Connections inherit it. asyncio does not set it for sockets of the protocol 0, as here, and then a response waits
+    # 40 ms between header and body.
+    found.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    return found
 
 
 def is_token(text: str) -> bool:
