@@ -9,7 +9,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Awaitable, Callable, Coroutine, Hashable
-from concurrent.futures import Future, InvalidStateError
+from concurrent.futures import Future
 from contextlib import suppress
 from functools import partial
 from typing import Any, Generic, TypeVar
@@ -26,6 +26,106 @@ MOST_KEPT = 5_000
 """Maximum number of messages that wait for one reader."""
 
 
+class Lane:
+    """Functions that another thread passes to a loop, which executes them in order and in batches.
+
+    Args:
+        loop: the loop.
+    """
+
+    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
+        self.loop = loop
+        self._waiting: deque[Callable[[], object]] = deque()
+        self._lock = threading.Lock()
+        self._is_scheduled = False
+
+    def post(self, function: Callable[[], object]) -> None:
+        """Execute a function on the loop, without waiting for it.
+
+        Raises:
+            RequestError: the loop is closed.
+        """
+        with self._lock:
+            self._waiting.append(function)
+            if self._is_scheduled:
+                return
+            self._is_scheduled = True
+        try:
+            self.loop.call_soon_threadsafe(self._execute)
+        except RuntimeError:  # the loop is closed
+            raise RequestError("ended", "the run has ended") from None
+
+    def _execute(self) -> None:
+        until = time.perf_counter() + SLICE
+        while True:
+            with self._lock:
+                if not self._waiting:
+                    self._is_scheduled = False
+                    return
+                function = self._waiting.popleft()
+            try:
+                function()
+            except BaseException:
+                self.loop.call_soon(
+                    self._execute
+                )  # the loop handles the error; the next function is executed
+                raise
+            if time.perf_counter() > until:
+                self.loop.call_soon(self._execute)
+                return
+
+
+class Reply(Generic[T]):
+    """The answer of a run to one request of a door.
+
+    Args:
+        back: the way to the door, whose loop runs in this thread.
+
+    Attributes:
+        future: the answer, for the door. To cancel it withdraws a request that has not begun.
+    """
+
+    def __init__(self, back: Lane) -> None:
+        self._back, self._begun = back, threading.Lock()
+        self.future: asyncio.Future[T] = back.loop.create_future()
+        self._patience = back.loop.call_later(PATIENCE, self._give_up)
+        self.future.add_done_callback(self._withdraw)
+
+    def begin(self, request: "Callable[[Reply[T]], object]") -> None:
+        """Execute a request, unless the door no longer wants it. Belongs to the loop of the run."""
+        if not self._begun.acquire(blocking=False):
+            return
+        try:
+            request(self)
+        except Exception as error:
+            self.fail(error)
+
+    def give(self, answer: T) -> None:
+        """Answer. Belongs to the loop of the run."""
+        self._settle(self.future.set_result, answer)
+
+    def fail(self, error: BaseException) -> None:
+        """Raise an exception in the door. Belongs to the loop of the run."""
+        self._settle(self.future.set_exception, error)
+
+    def _settle(self, settle: Callable[[Any], None], outcome: object) -> None:
+        def arrive() -> None:
+            if not self.future.done():
+                settle(outcome)
+
+        with suppress(RequestError):  # the door is closed
+            self._back.post(arrive)
+
+    def _give_up(self) -> None:
+        if self._begun.acquire(blocking=False):
+            message = f"the run has not responded for {PATIENCE:g} s"
+            self.future.set_exception(RequestError("unresponsive", message))
+
+    def _withdraw(self, _: object) -> None:
+        self._begun.acquire(blocking=False)
+        self._patience.cancel()
+
+
 class Crossing:
     """Executes requests of a door on the loop of the run.
 
@@ -34,104 +134,51 @@ class Crossing:
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
-        self._loop = loop
-        self._requests: deque[Callable[[], object]] = deque()
-        self._lock = threading.Lock()
-        self._is_scheduled = False
+        self._run = Lane(loop)
+        self._door: Lane | None = None
+        self.post = self._run.post
+
+    def ask(self, request: Callable[[Reply[T]], object]) -> "asyncio.Future[T]":
+        """Call *request* on the loop of the run with what takes the answer, now or later. Return the future answer.
+
+        It ends with a `RequestError` if the run does not respond, or has ended. The request is then not executed.
+        """
+        if self._door is None:
+            self._door = Lane(asyncio.get_running_loop())
+        reply = Reply[T](self._door)
+        try:
+            self.post(partial(reply.begin, request))
+        except RequestError as error:
+            reply.future.set_exception(error)
+        return reply.future
 
     async def call(self, function: Callable[..., T], *args: Any) -> T:
-        """Call a function on the loop of the run. Return its result, or raise its exception.
-
-        Raises:
-            RequestError: the run does not respond, or has ended. The function is then not called.
-        """
-        done: Future[T] = Future()
-        self.post(partial(_call, function, args, done))
-        limit = asyncio.timeout(PATIENCE)
-        try:
-            async with limit:
-                return await asyncio.wrap_future(done)
-        except TimeoutError:
-            if not limit.expired():
-                raise  # the function has raised it
-            message = f"the run has not responded for {PATIENCE:g} s"
-            raise RequestError("unresponsive", message) from None
+        """Call a function on the loop of the run. Return its result, or raise its exception."""
+        return await self.ask(lambda reply: reply.give(function(*args)))
 
     async def wait(self, function: Callable[..., Coroutine[Any, Any, T]], *args: Any) -> T:
         """Await a coroutine function on the loop of the run. Return its result, or raise its exception."""
-        done: Future[T] = Future()
+        tasks: list[asyncio.Task[T]] = []
 
-        async def work() -> T:
-            return await function(*args)
+        def start(reply: Reply[T]) -> None:
+            tasks.append(self._run.loop.create_task(function(*args)))
+            tasks[0].add_done_callback(partial(_pass_on, reply))
 
-        def start() -> None:
-            if done.cancelled():
-                return  # the door no longer wants it
-            task = self._loop.create_task(work())
-            task.add_done_callback(partial(_pass_on, done))
-            done.add_done_callback(lambda _: self._stop(task))
-
-        self.post(start)
-        return await asyncio.wrap_future(done)
-
-    def _stop(self, task: "asyncio.Task[Any]") -> None:
-        """Cancel a task whose result the door no longer wants."""
-        if not task.done() and not self._loop.is_closed():
-            self._loop.call_soon_threadsafe(task.cancel)
-
-    def post(self, request: Callable[[], object]) -> None:
-        """Execute a request on the loop of the run, without waiting for it.
-
-        Raises:
-            RequestError: the run has ended.
-        """
-        with self._lock:
-            self._requests.append(request)
-            if self._is_scheduled:
-                return
-            self._is_scheduled = True
         try:
-            self._loop.call_soon_threadsafe(self._execute)
-        except RuntimeError:  # the loop is closed
-            raise RequestError("ended", "the run has ended") from None
-
-    def _execute(self) -> None:
-        until = time.perf_counter() + SLICE
-        while True:
-            with self._lock:
-                if not self._requests:
-                    self._is_scheduled = False
-                    return
-                request = self._requests.popleft()
-            try:
-                request()
-            except BaseException:
-                self._loop.call_soon(
-                    self._execute
-                )  # the loop handles the error; the next request is executed
-                raise
-            if time.perf_counter() > until:
-                self._loop.call_soon(self._execute)
-                return
+            return await self.ask(start)
+        except asyncio.CancelledError:
+            with suppress(RequestError):  # the run has ended
+                self.post(lambda: [each.cancel() for each in tasks])
+            raise
 
 
-def _call(function: Callable[..., T], args: tuple[Any, ...], done: "Future[T]") -> None:
-    if not done.set_running_or_notify_cancel():
-        return  # the door no longer wants it
-    try:
-        done.set_result(function(*args))
-    except Exception as error:
-        done.set_exception(error)
-
-
-def _pass_on(done: "Future[T]", task: "asyncio.Task[T]") -> None:
-    with suppress(InvalidStateError):  # the door no longer wants it
-        if task.cancelled():
-            done.set_exception(RequestError("ended", "the run has ended"))
-        elif (error := task.exception()) is not None:
-            done.set_exception(error)
-        else:
-            done.set_result(task.result())
+def _pass_on(reply: Reply[T], task: "asyncio.Task[T]") -> None:
+    if task.cancelled():
+        reply.fail(RequestError("ended", "the run has ended"))
+    elif (error := task.exception()) is not None:
+        reply.fail(error)
+    else:
+        reply.give(task.result())
 
 
 class Lagging(Exception):
