@@ -1,30 +1,27 @@
 """The resources: agents, goals, beliefs, questions, events, explanations and artifacts."""
 
 import asyncio
-from collections.abc import AsyncIterator, Callable, Coroutine, Mapping
+from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
 from contextlib import suppress
-from functools import partial
 from math import isfinite, nan
 from typing import Any, TypeVar
 from urllib.parse import quote
 
-from starlette.applications import Starlette
-from starlette.exceptions import HTTPException
 from starlette.requests import HTTPConnection, Request
 from starlette.responses import Response, StreamingResponse
-from starlette.routing import BaseRoute, Route, WebSocketRoute
+from starlette.routing import BaseRoute, Route, Router, WebSocketRoute
 from starlette.types import ASGIApp
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from jacaros.serving.arguments import reasons_of
 from jacaros.serving.callers import RequestError
-from jacaros.serving.crossing import Lagging
+from jacaros.serving.crossing import Lagging, Reply
 from jacaros.serving.goals import REFUSED_STATE, RequestedGoal
-from jacaros.serving.http import problems
 from jacaros.serving.http.clients import Client, Clients, Stream, encoded
+from jacaros.serving.http.endpoint import Answer, Endpoint, unknown
 from jacaros.serving.http.guard import arguments_of, caller_of
 from jacaros.serving.http.openapi import described, document
-from jacaros.serving.http.problems import HEADERS, problem
+from jacaros.serving.http.problems import HEADERS, of_error, problem
 from jacaros.serving.service import Session
 
 SOON = 0.25
@@ -50,46 +47,37 @@ class Resources:
     def __init__(self, clients: Clients, title: str) -> None:
         self._clients, self._title = clients, title
 
-    def app(self, mounts: Mapping[str, ASGIApp]) -> Starlette:
-        """Return the application, with further ones below their paths."""
-
-        def route(method: str, path: str, endpoint: Callable[[Request, Client], Any]) -> Route:
-            async def answer(request: Request) -> Response:
-                found: Response = await endpoint(request, self._client(request))
-                return found
-
-            return Route(path, answer, methods=[method])
-
+    def app(self, mounts: Mapping[str, ASGIApp]) -> ASGIApp:
+        """Return the application, with further ones at their paths."""
+        agent, goal = "/agents/{agent}", "/goals/{id}"
+        belief, question = f"{agent}/beliefs", f"{agent}/questions"
         routes: list[BaseRoute] = [
-            route("GET", "/openapi.json", self.openapi),
-            route("GET", "/agents", self.agents),
-            route("GET", "/agents/{agent}", self.agent),
-            route("POST", "/agents/{agent}/goals", self.achieve_text),
-            route("POST", "/agents/{agent}/goals/{name}", self.achieve),
-            route("POST", "/agents/{agent}/beliefs", partial(self.tell_text, untell=False)),
-            route("DELETE", "/agents/{agent}/beliefs", partial(self.tell_text, untell=True)),
-            route("GET", "/agents/{agent}/beliefs/{name}", self.beliefs),
-            route("POST", "/agents/{agent}/beliefs/{name}", partial(self.tell, untell=False)),
-            route("DELETE", "/agents/{agent}/beliefs/{name}", partial(self.tell, untell=True)),
-            route("POST", "/agents/{agent}/questions", self.ask),
-            route("POST", "/agents/{agent}/questions/{name}", self.query),
-            route("GET", "/goals", self.goals),
-            route("GET", "/goals/{id}", self.goal),
-            route("DELETE", "/goals/{id}", self.cancel),
-            route("GET", "/events", self.events),
+            self._route(f"{agent}/goals/{{name}}", POST=self.achieve),
+            self._route(goal, GET=self.goal, DELETE=self.cancel),
+            self._route("/goals", GET=self.goals),
+            self._route(f"{belief}/{{name}}", GET=self.beliefs, POST=self.tell, DELETE=self.tell),
+            self._route(f"{question}/{{name}}", POST=self.query),
+            self._route(f"{agent}/goals", POST=self.achieve_text),
+            self._route(belief, POST=self.tell_text, DELETE=self.tell_text),
+            self._route(question, POST=self.ask),
+            self._route("/events", GET=self.events),
             WebSocketRoute("/events", self.socket),
-            route("GET", "/why", self.why),
-            route("GET", "/artifacts", self.artifacts),
-            route("GET", "/questions", self.questions),
-            route("POST", "/questions/{id}", self.answer),
+            self._route("/agents", GET=self.agents),
+            self._route(agent, GET=self.agent),
+            self._route("/openapi.json", GET=self.openapi),
+            self._route("/why", GET=self.why),
+            self._route("/artifacts", GET=self.artifacts),
+            self._route("/questions", GET=self.questions),
+            self._route("/questions/{id}", POST=self.answer),
             *(Route(path, app) for path, app in mounts.items()),  # not below it: MCP has one address
         ]
-        handlers: dict[Any, Any] = {
-            RequestError: problems.on_request_error,
-            HTTPException: problems.on_http_error,
-            Exception: problems.on_defect,
-        }
-        return Starlette(routes=routes, exception_handlers=handlers)
+        return Router(routes, default=unknown)
+
+    def _route(self, path: str, **methods: Callable[[Request, Client], Awaitable[Response]]) -> Route:
+        def answering(method: Callable[[Request, Client], Awaitable[Response]]) -> Answer:
+            return lambda request: method(request, self._client(request))
+
+        return Route(path, Endpoint(**{name: answering(method) for name, method in methods.items()}))
 
     def _client(self, connection: "HTTPConnection[Any]") -> Client:
         return self._clients.of(caller_of(connection))
@@ -131,26 +119,11 @@ class Resources:
         self, request: Request, client: Client, give: Callable[[Session], RequestedGoal]
     ) -> Response:
         """Give a goal, and return it when it is accepted or refused."""
-        wait = _wait(request)
-        taken: list[RequestedGoal] = []
-
-        def take(session: Session) -> RequestedGoal:
-            if not taken:
-                taken.append(give(session))
-            return taken[0]
-
-        async def settled(session: Session) -> dict[str, Any]:
-            goal = take(session)
-            await (goal.wait() if wait else goal.decided())
-            return goal.data()
-
-        data = await _within(request, client.wait(settled), wait, SOON)
-        if data is None:  # `settled` is cancelled: if it has not begun, it never will
-            data = await client.do(lambda session: take(session).data())
-        goal, place = taken[0], f"/goals/{data['id']}"
+        goal, data = await _waited(request, client, give, SOON)
+        place = f"/goals/{data['id']}"
         if data["state"] == REFUSED_STATE:
             return problem("refused", goal.message, reasons_of(goal.reasons), goal=place)
-        return _json(data, 201, {"Location": place, **_applied(wait)})
+        return _json(data, 201, {"Location": place, **_applied(request)})
 
     async def goals(self, request: Request, client: Client) -> Response:
         """``GET /goals``: the newest goals of the caller, or of all callers for an operator."""
@@ -165,24 +138,15 @@ class Resources:
 
     async def goal(self, request: Request, client: Client) -> Response:
         """``GET /goals/ID``."""
-        id, wait = request.path_params["id"], _wait(request)
-        goal = await client.do(lambda session: session.goal(id))
-        return await self._shown(request, client, goal, wait)
+        id = request.path_params["id"]
+        _, data = await _waited(request, client, lambda session: session.goal(id))
+        return _json(data, headers=_applied(request))
 
     async def cancel(self, request: Request, client: Client) -> Response:
         """``DELETE /goals/ID``: cancel it."""
-        id, wait = request.path_params["id"], _wait(request)
-        goal = await client.do(lambda session: session.cancel(id))
-        return await self._shown(request, client, goal, wait, 202)
-
-    async def _shown(
-        self, request: Request, client: Client, goal: RequestedGoal, wait: float, alive: int = 200
-    ) -> Response:
-        """Return a goal, when it has ended or the time to wait for that is over."""
-        if wait:
-            await _within(request, client.wait(lambda _: goal.wait()), wait)
-        data = await client.do(lambda _: goal.data())
-        return _json(data, alive if data["ended"] is None else 200, _applied(wait))
+        id = request.path_params["id"]
+        _, data = await _waited(request, client, lambda session: session.cancel(id))
+        return _json(data, 202 if data["ended"] is None else 200, _applied(request))
 
     # ---- beliefs and questions
 
@@ -191,11 +155,11 @@ class Resources:
         agent, name = request.path_params["agent"], request.path_params["name"]
         return _json({"beliefs": await client.do(lambda session: session.beliefs(agent, name))})
 
-    async def tell(self, request: Request, client: Client, untell: bool) -> Response:
+    async def tell(self, request: Request, client: Client) -> Response:
         """``POST`` and ``DELETE /agents/A/beliefs/B``: tell a belief, or take it back."""
         given = await arguments_of(request)
         agent, name = request.path_params["agent"], request.path_params["name"]
-        await client.do(lambda session: session.tell(agent, name, given, untell))
+        await client.do(lambda session: session.tell(agent, name, given, request.method == "DELETE"))
         return Response(status_code=204, headers=HEADERS)
 
     async def query(self, request: Request, client: Client) -> Response:
@@ -204,10 +168,10 @@ class Resources:
         agent, name = request.path_params["agent"], request.path_params["name"]
         return _json({"answers": await client.do(lambda session: session.query(agent, name, given))})
 
-    async def tell_text(self, request: Request, client: Client, untell: bool) -> Response:
+    async def tell_text(self, request: Request, client: Client) -> Response:
         """``POST`` and ``DELETE /agents/A/beliefs``: tell a belief as text in the language, or take it back."""
         written, agent = await _text_of(request), request.path_params["agent"]
-        await client.do(lambda session: session.tell_text(agent, written, untell))
+        await client.do(lambda session: session.tell_text(agent, written, request.method == "DELETE"))
         return Response(status_code=204, headers=HEADERS)
 
     async def ask(self, request: Request, client: Client) -> Response:
@@ -219,7 +183,8 @@ class Resources:
         """``GET /why?question=…&at=…``: explain the run."""
         question = request.query_params.get("question", "")
         at = _real(request, "at")
-        found = await _within(request, client.wait(lambda session: session.why(question, at)), LONGEST_WAIT)
+        asking = asyncio.create_task(client.wait(lambda session: session.why(question, at)))
+        found = await _within(request, asking, LONGEST_WAIT)
         if found is None:
             raise RequestError("unanswerable", f"the explanation takes longer than {LONGEST_WAIT:g} s")
         return _json({**found.data(), "text": found.text()})
@@ -267,7 +232,7 @@ class Resources:
         try:
             stream, stop = await client.begin(_beliefs(socket))
         except RequestError as error:
-            await socket.send_denial_response(problems.of_error(error))
+            await socket.send_denial_response(of_error(error))
             return
         try:
             await socket.accept()
@@ -309,30 +274,52 @@ async def messages(stream: Stream) -> AsyncIterator[str]:
             yield each
 
 
+async def _waited(
+    request: Request, client: Client, find: Callable[[Session], RequestedGoal], usual: float = 0.0
+) -> tuple[RequestedGoal, dict[str, Any]]:
+    """Return a goal and its data when it has ended, or the time that the client waits for that is over.
+
+    Args:
+        find: finds or gives the goal.
+        usual: seconds to wait for the decision about the goal, if the client does not wait.
+    """
+    wait = _wait(request)
+    found: list[RequestedGoal] = []
+
+    def now(session: Session) -> RequestedGoal:
+        if not found:
+            found.append(find(session))
+        return found[0]
+
+    def look(session: Session, reply: Reply[dict[str, Any]]) -> None:
+        goal = now(session)
+        if wait or usual:
+            goal.then(lambda: reply.give(goal.data()), bool(wait))
+        else:
+            reply.give(goal.data())
+
+    data = await _within(request, client.ask(look), wait or usual or LONGEST_WAIT)
+    if data is None:  # a request that has not begun is withdrawn
+        data = await client.do(lambda session: now(session).data())
+    return found[0], data
+
+
 T = TypeVar("T")
 
 
-async def _within(
-    request: Request, work: Coroutine[Any, Any, T], wait: float, usual: float = 0.0
-) -> T | None:
-    """Return the result of *work*, or None if it takes longer, or the client that waits leaves.
-
-    Args:
-        wait: seconds that the client is ready to wait; 0 for *usual* seconds.
-    """
-    if not wait:
-        try:
-            async with asyncio.timeout(usual):
-                return await work
-        except TimeoutError:
-            return None
-    working, leaving = asyncio.create_task(work), asyncio.create_task(_left(request))
+async def _within(request: Request, work: "asyncio.Future[T]", wait: float) -> T | None:
+    """Return the result of *work*, or None if it takes longer than *wait*, or the client leaves. It is then cancelled."""
+    leaving: asyncio.Task[None] | None = None
     try:
-        await asyncio.wait((working, leaving), timeout=wait, return_when=asyncio.FIRST_COMPLETED)
-        return working.result() if working.done() else None
+        await asyncio.wait((work,), timeout=min(wait, SOON))
+        if not work.done() and wait > SOON:
+            leaving = asyncio.create_task(_left(request))
+            await asyncio.wait((work, leaving), timeout=wait - SOON, return_when=asyncio.FIRST_COMPLETED)
+        return work.result() if work.done() else None
     finally:
-        working.cancel()
-        leaving.cancel()
+        work.cancel()
+        if leaving is not None:
+            leaving.cancel()
 
 
 async def _left(request: Request) -> None:
@@ -362,8 +349,8 @@ def _wait(request: Request) -> float:
     return 0.0
 
 
-def _applied(wait: float) -> Mapping[str, str]:
-    return {"Preference-Applied": f"wait={wait:g}"} if wait else {}
+def _applied(request: Request) -> Mapping[str, str]:
+    return {"Preference-Applied": f"wait={wait:g}"} if (wait := _wait(request)) else {}
 
 
 def _number(request: Request, name: str, default: int) -> int:

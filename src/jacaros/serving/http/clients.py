@@ -8,7 +8,7 @@ from contextlib import suppress
 from typing import Any, TypeVar
 
 from jacaros.serving.callers import Caller, RequestError
-from jacaros.serving.crossing import Crossing, Lagging, Outbox
+from jacaros.serving.crossing import Crossing, Lagging, Outbox, Reply
 from jacaros.serving.goals import OVER
 from jacaros.serving.service import Event, Service, Session
 
@@ -46,6 +46,13 @@ class Client:
         """Call a function with the session, on the loop of the run."""
         with self._present():
             return await self._crossing.call(lambda: request(self._opened()))
+
+    def ask(self, request: Callable[[Session, Reply[T]], object]) -> "asyncio.Future[T]":
+        """Call a function with the session and what takes the answer, now or later, on the loop of the run."""
+        answer: asyncio.Future[T] = self._crossing.ask(lambda reply: request(self._opened(), reply))
+        self.came()
+        answer.add_done_callback(lambda _: self.went())
+        return answer
 
     async def wait(self, request: Callable[[Session], Coroutine[Any, Any, T]]) -> T:
         """Await a coroutine function with the session, on the loop of the run."""

@@ -5,8 +5,6 @@ from collections.abc import Mapping, Sequence
 from http import HTTPStatus
 from typing import Any
 
-from starlette.exceptions import HTTPException
-from starlette.requests import Request
 from starlette.responses import Response
 
 from jacaros.serving.arguments import reasons_of
@@ -61,24 +59,3 @@ def problem(code: str, detail: str, reasons: Sequence[str] = (), **more: Any) ->
 def of_error(error: RequestError) -> Response:
     """Return the problem document of a request that has no effect."""
     return problem(error.code, error.message, reasons_of(error.reasons))
-
-
-async def on_request_error(_: Request, error: Exception) -> Response:
-    """Answer a request that has no effect."""
-    assert isinstance(error, RequestError)
-    return of_error(error)
-
-
-async def on_http_error(request: Request, error: Exception) -> Response:
-    """Answer a request for an unknown path, or with a method that the path does not have."""
-    assert isinstance(error, HTTPException)
-    if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
-        found = problem("method_not_allowed", f"{request.method} is not a method of {request.url.path[:200]}")
-        found.headers["Allow"] = (error.headers or {}).get("Allow", "")
-        return found
-    return problem("unknown_path", f"no resource {request.url.path[:200]}")
-
-
-async def on_defect(_: Request, __: Exception) -> Response:
-    """Answer a request that meets a defect of JaCaROS."""
-    return problem("internal_error", "a defect of JaCaROS; its log has the details")
