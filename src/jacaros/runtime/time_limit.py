@@ -4,7 +4,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from jacaros.runtime.clock import real_time
 
@@ -26,8 +26,7 @@ def time_limit(seconds: float) -> Iterator[None]:
 
     def check(frame: FrameType, _event: str, _argument: object) -> None:
         if real_time() > until and frame.f_code is not go_on.__code__:
-            sys.setprofile(before)
-            raise TimeIsUp
+            raise TimeIsUp  # and the interpreter drops the profile function
 
     def go_on(ignored: "sys.UnraisableHookArgs") -> None:
         # Where an object goes, such as a generator, the interpreter ignores the exception. Raise it again after that.
@@ -36,13 +35,21 @@ def time_limit(seconds: float) -> Iterator[None]:
         else:
             hook(ignored)
 
-    sys.unraisablehook = go_on
-    sys.setprofile(check)
     try:
+        sys.unraisablehook = go_on
+        sys.setprofile(check)
         yield
     finally:
-        sys.setprofile(before)
+        _restore(before)
         sys.unraisablehook = hook
+
+
+def _restore(profiler: Any) -> None:
+    """Let a profile function, or a profiler in C such as `cProfile`, continue."""
+    if profiler is None or callable(profiler):
+        sys.setprofile(profiler)
+    else:
+        profiler.enable()
 
 
 def within(seconds: float, compute: Callable[[], T]) -> T | None:

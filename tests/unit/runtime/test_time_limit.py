@@ -1,6 +1,7 @@
 """The time limit of a computation, on a clock of the test."""
 
 from collections.abc import Callable, Iterator
+from cProfile import Profile
 from weakref import ref
 
 import pytest
@@ -55,3 +56,14 @@ def test_the_end_of_an_object_does_not_lose_the_limit(
     assert not things
     assert watched() is None
     assert not ended
+
+
+@pytest.mark.parametrize("seconds", [60.0, -1.0])
+def test_a_profiler_continues_afterwards(seconds: float) -> None:
+    profiler = Profile()
+    profiler.enable()
+    within(seconds, lambda: repr(Thing()))
+    generator()
+    profiler.disable()
+    called = {entry.code for entry in profiler.getstats()}
+    assert generator.__code__ in called
