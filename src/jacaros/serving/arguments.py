@@ -12,7 +12,7 @@ any                any data: strings are strings, ``{"atom": "kitchen"}`` is an 
 =================  ====================================================================
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
 from typing import Any
 
@@ -79,6 +79,50 @@ def terms_of(offer: Offer, given: Mapping[str, Data] | Sequence[Data]) -> list[T
     if wrong:
         raise _invalid(offer, wrong)
     return terms
+
+
+def fitting(offers: Sequence[Offer], given: Mapping[str, Data] | Sequence[Data]) -> tuple[Offer, list[Term]]:
+    """Return the one of the offers of a name that data fits by number, names and kinds, and its arguments as terms.
+
+    Raises:
+        RequestError: data fits none, or more than one.
+    """
+    near = [each for each in offers if len(offers) == 1 or _has_form(each, given)]
+    if len(near) > 1:
+        near = [each for each in near if _fits(each, given)]
+    if len(near) == 1:
+        return near[0], terms_of(near[0], given)
+    forms = " or ".join(map(str, near or offers))
+    if near:
+        help = f"name it `{near[0].key}`, or write the {near[0].what} as text"
+        raise RequestError("invalid_arguments", f"ambiguous: these arguments fit {forms}; {help}")
+    raise RequestError("invalid_arguments", f"expected {forms}")
+
+
+def _has_form(offer: Offer, given: Mapping[str, Data] | Sequence[Data]) -> bool:
+    if isinstance(given, Mapping):
+        return given.keys() == {each.name for each in offer.inputs}
+    return len(given) == len(offer.inputs)
+
+
+def _fits(offer: Offer, given: Mapping[str, Data] | Sequence[Data]) -> bool:
+    try:
+        terms_of(offer, given)
+    except RequestError:
+        return False
+    return True
+
+
+def called(offer: Offer, offers: Iterable[Offer]) -> str:
+    """Return by which name callers call one of the offers of an agent: ``deliver``, or ``deliver/2`` if several have it."""
+    same = [each for each in offers if (each.what, each.name) == (offer.what, offer.name)]
+    return offer.name if len(same) < 2 else offer.key
+
+
+def split_key(name: str) -> tuple[str, int | None]:
+    """Return functor and number of arguments of a name such as ``deliver/2``; None for any number."""
+    functor, _, count = name.rpartition("/")
+    return (functor, int(count)) if functor and count.isdecimal() and len(count) < 4 else (name, None)
 
 
 def _invalid(offer: Offer, wrong: Sequence[str]) -> RequestError:

@@ -25,7 +25,7 @@ from jacaros.runtime.mas.system import System
 from jacaros.runtime.trace import Cause
 from jacaros.serving import artifacts
 from jacaros.serving.agent import OfferingAgent, OnFacts
-from jacaros.serving.arguments import Data, check_terms, literal_of, parsed, terms_of
+from jacaros.serving.arguments import Data, check_terms, fitting, literal_of, parsed, split_key
 from jacaros.serving.callers import Allowance, Caller, RequestError, check_text
 from jacaros.serving.console import Operator, soon
 from jacaros.serving.goals import RequestedGoal
@@ -246,16 +246,27 @@ class Session:
             raise RequestError("unknown_agent", f"no agent `{name[:80]}` offers anything")
         return found
 
-    def _offer(self, agent: OfferingAgent, what: str, name: str, count: int | None = None) -> Offer:
+    def _offers(self, agent: OfferingAgent, what: str, name: str, count: int | None = None) -> list[Offer]:
+        """Return what is offered to the caller under a name, which may be a key such as ``deliver/2``."""
+        if count is None:
+            name, count = split_key(name)
         found = agent.find(what, name, count)
         permitted = [each for each in found if self.caller.may(each)]
         if permitted:
-            return permitted[0]
+            return permitted
         size = "" if count is None else f"/{count}"
         if found:
             needed = " or ".join(sorted(found[0].roles))
             raise RequestError("not_permitted", f"the {what} `{name[:80]}{size}` needs the role {needed}")
         raise RequestError("not_offered", f"{agent.name} offers no {what} `{name[:80]}{size}`")
+
+    def _offer(self, agent: OfferingAgent, what: str, name: str, count: int | None = None) -> Offer:
+        """Return the one offer of a name."""
+        found = self._offers(agent, what, name, count)
+        if len(found) == 1:
+            return found[0]
+        keys = " or ".join(f"`{each.key}`" for each in found)
+        raise RequestError("invalid_arguments", f"ambiguous: the {what} `{name[:80]}` is {keys}")
 
     # ---- goals
 
@@ -266,13 +277,12 @@ class Session:
 
         Args:
             agent: name of the agent.
-            goal: name of the goal.
+            goal: name of the goal; ``deliver/2`` if several have that name.
             arguments: JSON data, by name or in order.
         """
         with self._request():
             offering = self._agent(agent)
-            offer = self._offer(offering, "goal", goal)
-            return self._give(offering, offer, terms_of(offer, arguments))
+            return self._give(offering, *fitting(self._offers(offering, "goal", goal), arguments))
 
     def achieve_text(self, agent: str, written: str) -> RequestedGoal:
         """Give an agent a goal that it offers, as text in the language."""
@@ -338,17 +348,32 @@ class Session:
             return offering.facts(self._offer(offering, "belief", name))
 
     def watch(self, agent: str, name: str, listener: OnFacts) -> Callable[[], None]:
-        """Call *listener* with the beliefs under a name now, and when they change. Return a function that ends this."""
+        """Call *listener* with the beliefs under a name now, and when they change. Return a function that ends this.
+
+        An agent that ends and starts again is watched again.
+        """
+        watching = _Watching(agent, name, listener)
         with self._request():
-            offering = self._agent(agent)
-            end = offering.watch(self._offer(offering, "belief", name), listener)
-        self._ends[end] = None
+            self._watch(watching)
+        self._watched[watching] = None
 
         def stop() -> None:
-            self._ends.pop(end, None)
-            end()
+            self._watched.pop(watching, None)
+            watching.end()
 
         return stop
+
+    def _watch(self, watching: _Watching, later: bool = False) -> None:
+        offering = self._agent(watching.agent)
+        offer = self._offer(offering, "belief", watching.name)
+        watching.end = offering.watch(offer, watching.listener, later)
+
+    def agent_came(self, name: str) -> None:
+        """An agent has started: watch again what was watched of an earlier one, if it offers that, too."""
+        for each in tuple(self._watched):
+            if each.agent == name:
+                with suppress(RequestError):
+                    self._watch(each, later=True)
 
     def ask(self, agent: str, written: str) -> list[dict[str, Data]]:
         """Ask an agent a question that it offers, such as ``route(lab, To, Metres)``; beliefs can be asked for, too.
@@ -370,8 +395,8 @@ class Session:
         """Ask an agent a question that it offers, with JSON data. Return the results of each answer by name."""
         with self._request():
             offering = self._agent(agent)
-            offer = self._offer(offering, "question", name)
-            answers = answers_of(offering.mind, offer, terms_of(offer, arguments))
+            offer, terms = fitting(self._offers(offering, "question", name), arguments)
+            answers = answers_of(offering.mind, offer, terms)
             results = {each.name for each in offer.parameters if each.output}
             return [{name: value for name, value in each.items() if name in results} for each in answers]
 
@@ -381,8 +406,8 @@ class Session:
         """Tell an agent a belief that it takes from callers, or take it back."""
         with self._request():
             offering = self._agent(agent)
-            offer = self._offer(offering, "tell", name)
-            self._tell(offering, offer, terms_of(offer, arguments), untell)
+            offer, terms = fitting(self._offers(offering, "tell", name), arguments)
+            self._tell(offering, offer, terms, untell)
 
     def tell_text(self, agent: str, written: str, untell: bool = False) -> None:
         """Tell an agent a belief that it takes from callers, as text in the language."""

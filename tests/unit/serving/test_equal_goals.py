@@ -5,7 +5,7 @@ import asyncio
 import pytest
 from serving_lab import Lab, run
 
-from jacaros.runtime.mas.scheduler import Scheduler
+from jacaros.runtime.mas.scheduler import Runnable, Scheduler
 from jacaros.serving.goals import ACHIEVED, CANCELLED
 
 PROGRAM = """
@@ -29,7 +29,12 @@ def test_equal_goals_of_two_callers_are_not_reported_as_a_loop(
     async def test(lab: Lab) -> None:
         scheduler = lab.mas.system.scheduler
         look = scheduler.busy_for_long
-        scheduler.busy_for_long = lambda agent, is_first: (looks.append(is_first), look(agent, is_first))[1]
+
+        def counted(agent: Runnable, is_first: bool) -> None:
+            looks.append(is_first)
+            look(agent, is_first)
+
+        scheduler.busy_for_long = counted
         lab.mas.system.listen_to_log(lambda line, _: log.append(line))
         ends: list[str] = []
 

@@ -52,11 +52,11 @@ class Resources:
         agent, goal = "/agents/{agent}", "/goals/{id}"
         belief, question = f"{agent}/beliefs", f"{agent}/questions"
         routes: list[BaseRoute] = [
-            self._route(f"{agent}/goals/{{name}}", POST=self.achieve),
+            self._route(f"{agent}/goals/{{name:path}}", POST=self.achieve),
             self._route(goal, GET=self.goal, DELETE=self.cancel),
             self._route("/goals", GET=self.goals),
-            self._route(f"{belief}/{{name}}", GET=self.beliefs, POST=self.tell, DELETE=self.tell),
-            self._route(f"{question}/{{name}}", POST=self.query),
+            self._route(f"{belief}/{{name:path}}", GET=self.beliefs, POST=self.tell, DELETE=self.tell),
+            self._route(f"{question}/{{name:path}}", POST=self.query),
             self._route(f"{agent}/goals", POST=self.achieve_text),
             self._route(belief, POST=self.tell_text, DELETE=self.tell_text),
             self._route(question, POST=self.ask),

@@ -5,8 +5,8 @@ from typing import Any, Final
 from urllib.parse import quote
 
 from jacaros.agents.language.offers import Offer, Parameter
+from jacaros.serving.arguments import called, schema_of
 from jacaros.serving.arguments import described as data_of_offer
-from jacaros.serving.arguments import schema_of
 from jacaros.version import VERSION
 
 Json = dict[str, Any]
@@ -102,7 +102,7 @@ def document(title: str, offered: Mapping[str, Sequence[Offer]]) -> Json:
         for method, path, operation in _written():
             add(method, f"/agents/{quote(agent, '')}/{path}", operation | {"tags": [agent]})
         for offer in offers:
-            for method, path, operation in _operations(offer):
+            for method, path, operation in _operations(offer, called(offer, offers)):
                 add(method, f"/agents/{quote(agent, '')}/{path}", operation | {"tags": [agent]})
     return {
         "openapi": "3.1.0",
@@ -131,9 +131,9 @@ def _written() -> Iterable[tuple[str, str, Json]]:
     yield "delete", "beliefs", _operation("Take back a belief, as text", done) | body
 
 
-def _operations(offer: Offer) -> Iterable[tuple[str, str, Json]]:
-    """Yield methods, paths and operations of an offer."""
-    name, doc = quote(offer.name, ""), offer.doc or str(offer)
+def _operations(offer: Offer, name: str) -> Iterable[tuple[str, str, Json]]:
+    """Yield methods, paths and operations of an offer with a name for callers."""
+    name, doc = quote(name), offer.doc or str(offer)
     if offer.what == "goal":
         results = _ref("Goal") | {"properties": {"results": schema_of(_results(offer)) | {"required": []}}}
         refused = {

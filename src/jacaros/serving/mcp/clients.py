@@ -220,7 +220,7 @@ class Pursuit:
 
     async def run(self, session: Session) -> dict[str, Any]:
         """Give the goal, and wait for its end. Return its data."""
-        goal = self._goal = session.achieve(self._tool.agent, self._tool.offer.name, self._arguments)
+        goal = self._goal = session.achieve(self._tool.agent, self._tool.offer.key, self._arguments)
         try:
             await goal.wait()
         except asyncio.CancelledError:

@@ -115,10 +115,10 @@ class McpServer:
     async def _use(self, ctx: Context, client: Client, tool: OfferedTool, given: Mapping[str, Any]) -> Result:
         agent, offer = tool.agent, tool.offer
         if offer.what == "question":
-            answers = await client.do(lambda session: session.query(agent, offer.name, given))
+            answers = await client.do(lambda session: session.query(agent, offer.key, given))
             return _told(_json(answers), {"answers": answers})
         if offer.what == "tell":
-            await client.do(lambda session: session.tell(agent, offer.name, given))
+            await client.do(lambda session: session.tell(agent, offer.key, given))
             return _told("told")
         wants_progress = ctx.meta is not None and "progress_token" in ctx.meta
         report = ctx.session.report_progress if wants_progress else None

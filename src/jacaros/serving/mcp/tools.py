@@ -10,7 +10,7 @@ import mcp_types as types
 
 from jacaros.agents.language.offers import Offer, Parameter
 from jacaros.look.why.why import FORMS
-from jacaros.serving.arguments import schema_of
+from jacaros.serving.arguments import called, schema_of
 
 LONGEST_NAME = 64
 """Maximum length of a tool's name that all clients take."""
@@ -77,20 +77,26 @@ OWN_TOOLS: Final = (
 _OWN_NAMES: Final = frozenset(each.name for each in OWN_TOOLS)
 
 
-def named_tools(offered: Iterable[tuple[str, Offer]]) -> dict[str, OfferedTool]:
+def named_tools(offered: Sequence[tuple[str, Offer]]) -> dict[str, OfferedTool]:
     """Return the offers of agents that are tools, by the names of the tools."""
     tools: dict[str, OfferedTool] = {}
     for agent, offer in offered:
         if offer.what not in ("goal", "question", "tell"):
             continue
         verb = "tell_" * (offer.what == "tell")
-        wanted = re.sub(r"[^A-Za-z0-9_-]", "_", f"{agent}_{verb}{offer.name}")[:LONGEST_NAME]
+        wanted = re.sub(r"[^A-Za-z0-9_-]", "_", f"{agent}_{verb}{_called(agent, offer, offered)}")[
+            :LONGEST_NAME
+        ]
         name, number = wanted, 1
         while name in tools or name in _OWN_NAMES:
             number += 1
             name = f"{wanted[: LONGEST_NAME - 4]}_{number}"
         tools[name] = OfferedTool(agent, offer)
     return tools
+
+
+def _called(agent: str, offer: Offer, offered: Iterable[tuple[str, Offer]]) -> str:
+    return called(offer, [each for name, each in offered if name == agent])
 
 
 def tool_of(name: str, tool: OfferedTool) -> types.Tool:
@@ -150,17 +156,17 @@ def belief_at(uri: str) -> tuple[str, str] | None:
     return unquote(parts.netloc), unquote(name)
 
 
-def resources_of(offered: Iterable[tuple[str, Offer]]) -> list[types.Resource]:
+def resources_of(offered: Sequence[tuple[str, Offer]]) -> list[types.Resource]:
     """Return the offered beliefs as resources."""
-    found = {
-        uri_of(agent, offer.name): types.Resource(
-            name=f"{agent}_{offer.name}",
+    return [
+        types.Resource(
+            name=f"{agent}_{name}",
             title=f"{agent}: {offer}",
-            uri=uri_of(agent, offer.name),
+            uri=uri_of(agent, name),
             description=offer.doc or f"Beliefs {offer} of the agent {agent}.",
             mime_type="application/json",
         )
         for agent, offer in offered
         if offer.what == "belief"
-    }
-    return list(found.values())
+        for name in (_called(agent, offer, offered),)
+    ]

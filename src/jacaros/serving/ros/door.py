@@ -177,7 +177,7 @@ class RosDoor:
             except (MessageMismatch, *MISMATCH) as error:
                 self.warn(f"[{agent}] the belief {offer.key} does not fit topic {topic}: {error}")
 
-        end = self.session().watch(agent, offer.name, publish)
+        end = self.session().watch(agent, offer.key, publish)
 
         def close() -> None:
             end()

@@ -223,3 +223,12 @@ def test_json_of_events_is_strict() -> None:
         assert sorted(each["m"] for each in found) == ["inf", "é\u2028"]
 
     serve(test, program)
+
+
+def test_a_goal_can_be_named_with_its_number_of_arguments() -> None:
+    async def test(lab: Lab) -> None:
+        given = await lab.anna.post("/agents/bob/goals/count/2", json={"n": 3}, headers={"Prefer": "wait=5"})
+        assert given.json()["results"] == {"next": 4}
+        problem(await lab.anna.post("/agents/bob/goals/count/3", json={"n": 3}), 404, "not_offered")
+
+    serve(test)

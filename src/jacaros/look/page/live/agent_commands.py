@@ -6,7 +6,7 @@ from typing import Any, Literal
 from jacaros.look.page.live.commands import Command, Text
 from jacaros.look.records.records import FiniteNumber
 from jacaros.look.why.tales import StoryLine
-from jacaros.serving.arguments import schema_of
+from jacaros.serving.arguments import called, schema_of
 from jacaros.serving.service import Session
 
 SHOWN = 20
@@ -26,7 +26,9 @@ async def _story(session: Session) -> Sequence[StoryLine]:
 
 def _offers(session: Session, agent: Text) -> list[dict[str, Any]]:
     offers = session.offers(agent, "goal") if agent in session.agents() else []
-    return [{"name": each.name, "doc": each.doc, "schema": schema_of(each.inputs)} for each in offers]
+    return [
+        {"name": called(each, offers), "doc": each.doc, "schema": schema_of(each.inputs)} for each in offers
+    ]
 
 
 def _goals(session: Session) -> list[dict[str, Any]]:
