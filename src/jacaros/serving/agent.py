@@ -166,18 +166,24 @@ class OfferingAgent:
         """Return the beliefs that an offer is about."""
         return answers_of(self.mind, offer)
 
-    def watch(self, offer: Offer, listener: OnFacts) -> Callable[[], None]:
-        """Call *listener* with the beliefs that an offer is about, now and when they change. Return what ends this."""
+    def watch(self, offer: Offer, listener: OnFacts, later: bool = False) -> Callable[[], None]:
+        """Call *listener* with the beliefs that an offer is about, now and when they change. Return what ends this.
+
+        Args:
+            later: whether the agent has just started: it has no beliefs yet, and is looked at soon.
+        """
         watch = self._watched.get(offer.key)
         if watch is None:
-            watch = self._watched[offer.key] = Watch(offer, self.facts(offer))
+            watch = self._watched[offer.key] = Watch(offer, [] if later else self.facts(offer))
+            if later:
+                self._look_soon()
         watch.listeners[listener] = None
         listener(watch.facts)
 
         def end() -> None:
             watch.listeners.pop(listener, None)
-            if not watch.listeners:
-                self._watched.pop(offer.key, None)
+            if not watch.listeners and self._watched.get(offer.key) is watch:
+                del self._watched[offer.key]
 
         return end
 

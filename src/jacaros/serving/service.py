@@ -5,7 +5,7 @@ import secrets
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any, TypeVar
 
 from jacaros.agents.language.offers import OBSERVER, OPERATOR, USER, Offer
@@ -86,6 +86,8 @@ class Service:
         host = self.system.directory.find(name) if present else None
         if host is not None and isinstance(host.mind, Mind) and host.mind.program.offers:
             self.agents[name] = OfferingAgent(host, self._announced)
+            for session in tuple(self.sessions):
+                session.agent_came(name)
         elif name in self.agents and not present:
             self.agents.pop(name).close()
         else:
@@ -185,6 +187,14 @@ def service_of(system: System) -> Service:
     return system.service
 
 
+class _Watching:
+    """Beliefs that a session watches, across restarts of the agent."""
+
+    def __init__(self, agent: str, name: str, listener: OnFacts) -> None:
+        self.agent, self.name, self.listener = agent, name, listener
+        self.end: Callable[[], None] = lambda: None
+
+
 class Session:
     """A caller's session. Each request has an effect, or raises `RequestError`.
 
@@ -200,7 +210,7 @@ class Session:
         self._service, self.caller = service, caller
         self.listeners: dict[OnEvent, None] = {}
         self._own: dict[str, RequestedGoal] = {}
-        self._ends: dict[Callable[[], None], None] = {}
+        self._watched: dict[_Watching, None] = {}
         self._allowance = Allowance(time.monotonic)
         self.closed = False
 
@@ -210,8 +220,9 @@ class Session:
             return
         self.closed = True
         self.listeners.clear()
-        for end in tuple(self._ends):
-            end()
+        for watching in self._watched:
+            watching.end()
+        self._watched.clear()
         for goal in tuple(self._own.values()):
             if not goal.over and goal.offer.when_left == "cancel":
                 self._cancel(goal)

@@ -3,13 +3,14 @@
 import asyncio
 import json
 import sys
+from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
 
 import httpx
 import pytest
 import websockets
-from http_lab import Lab, problem, serve, token
+from http_lab import PROGRAM, Lab, problem, serve, token
 
 from jacaros.serving.http import clients, protocol
 from jacaros.serving.http.app import messages
@@ -95,6 +96,34 @@ def test_a_websocket_tells_the_same() -> None:
             assert json.loads(response.body)["status"] == status
 
     serve(test)
+
+
+def test_streams_watch_the_beliefs_of_an_agent_that_starts_again() -> None:
+    async def test(lab: Lab) -> None:
+        url = f"{lab.door.url.replace('http', 'ws')}/events{QUERY}&access_token={token('anna')}"
+
+        async def until(level: int, hear: Callable[[], Awaitable[Any]]) -> None:
+            while (await hear()).get("beliefs") != [{"level": level}]:
+                pass
+
+        async with asyncio.timeout(30), lab.events(QUERY) as events, websockets.connect(url) as socket:
+            both = (lambda: anext(events)), (lambda: _next_of(socket))
+            for hear in both:
+                await until(80, hear)
+            lab.mas.agent("bob").kill()
+            lab.mas.add_agent("bob", PROGRAM.replace("battery(80)", "battery(70)"))
+            for hear in both:
+                await until(70, hear)
+            lab.mas.agent("bob").add_belief("battery", 60)
+            lab.mas.agent("bob").remove_belief("battery", 70)
+            for hear in both:
+                await until(60, hear)
+
+    serve(test)
+
+
+async def _next_of(socket: websockets.ClientConnection) -> Any:
+    return json.loads(await socket.recv())
 
 
 @needs_chromium
