@@ -1,12 +1,13 @@
 """The agents' node as a managed node: what each state means for agents, robot and goals."""
 
+import asyncio
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 import jacaros
-from jacaros import Mas
+from jacaros import Mas, PythonAgent
 from jacaros.robots.ros.errors import GoalRejected
 from jacaros.serving.ros.lifecycle import LABELS, Lifecycle
 from jacaros.serving.ros.opening import open_door
@@ -122,6 +123,61 @@ def test_the_robot_stands_still_while_inactive_and_goes_on() -> None:
         assert robot.pose != place
 
     managed(body, ROBOT)
+
+
+class Courier(PythonAgent):
+    """Drives ahead, counts its steps in two tasks, and tidies up at its end."""
+
+    async def run(self) -> None:
+        self.steps, self.tidied = [0, 0], False
+        await self.make_artifact("wheels", "ArtCmdVel")
+        try:
+            await asyncio.gather(self.act("move", 1000), self.count(0), self.start(self.count(1)))
+        finally:
+            self.tidied = True
+
+    async def count(self, place: int) -> None:
+        while True:
+            await self.sleep(0.1)
+            self.steps[place] += 1
+
+
+def test_an_agent_in_python_stops_while_inactive_and_goes_on() -> None:
+    async def body(mas: Mas, lifecycle: Lifecycle, manager: Manager) -> None:
+        assert mas.world is not None
+        robot = mas.world.robot()
+        made: list[Courier] = []
+
+        class Mine(Courier):
+            async def run(self) -> None:
+                made.append(self)
+                await super().run()
+
+        courier = mas.add_agent("courier", Mine)
+        await mas.sleep(1)
+        assert not made
+        await manager.change("configure")
+        await manager.change("activate")
+        await mas.sleep(3)
+        (found,) = made
+        assert min(found.steps) > 10
+        assert robot.speed > 0.1
+        await manager.change("deactivate")
+        await mas.sleep(1)
+        steps, place = list(found.steps), robot.pose
+        assert robot.speed == 0.0
+        await mas.sleep(5)
+        assert (found.steps, robot.pose) == (steps, place)
+        await manager.change("activate")
+        await mas.sleep(3)
+        assert min(found.steps) > max(steps) + 10
+        assert robot.pose != place
+        await manager.change("deactivate")
+        courier.kill()
+        await mas.sleep(1)
+        assert found.tidied
+
+    managed(body, world="patrol")
 
 
 def test_a_transition_that_does_not_fit_the_state_fails() -> None:

@@ -46,6 +46,7 @@ class SessionOperation:
     Attributes:
         operation: name of the operation.
         outcome: its outcome. None while it runs.
+        paused: whether its caller has paused it.
     """
 
     def __init__(
@@ -56,6 +57,7 @@ class SessionOperation:
         self.outcome: OperationOutcome | None = None
         self._outs = tuple(each for each in arguments if isinstance(each, Out))
         self._execution: UnderWay = ENDED
+        self.paused = False
         self._on_end: list[Callable[[SessionOperation], object]] = []
         self._waiting: list[asyncio.Future[None]] = []
 
@@ -89,11 +91,13 @@ class SessionOperation:
 
     def pause(self) -> None:
         """Pause it, if it is pausable."""
+        self.paused = True
         if not self.done:
             self._execution.pause()
 
     def resume(self) -> None:
         """Let it continue after `pause`."""
+        self.paused = False
         if not self.done:
             self._execution.resume()
 
@@ -192,6 +196,7 @@ class Session:
         self._closed = False
         self.presence = Presence(environment, name, home, self._observed)
         self._under_way: dict[SessionOperation, None] = {}
+        self._held: list[SessionOperation] | None = None
         self.observer: OperationObserver | None = None
 
     @property
@@ -496,7 +501,23 @@ class Session:
         request = OperationRequest(target, operation, given, self.name, None, handle.end, timeout)
         request.urgency = urgency
         handle.began(self.environment.execute(request))
+        if self._held is not None:
+            self._held.append(handle)
+            handle.pause()
         return handle
+
+    def hold(self) -> None:
+        """Pause all operations, also those that begin meanwhile, until `release`."""
+        if self._held is None:
+            self._held = [each for each in self._under_way if not each.paused]
+            for each in self._held:
+                each.pause()
+
+    def release(self) -> None:
+        """Let the operations continue that `hold` has paused."""
+        held, self._held = self._held, None
+        for each in held or ():
+            each.resume()
 
     def cancel_operations(self) -> None:
         """Cancel all running operations."""

@@ -19,6 +19,8 @@ from jacaros.agents.mind.rules.goals import resume_intention, suspend_intention
 from jacaros.agents.mind.state.intention import Intention
 from jacaros.robots.ros.guarded import guarded_by
 from jacaros.robots.ros.qos import QoS
+from jacaros.runtime.mas.agents.host import AgentHost
+from jacaros.runtime.mas.agents.python_agents import PythonAgentHost
 from jacaros.runtime.mas.system import System
 from jacaros.serving.ros.door import RosDoor
 
@@ -85,6 +87,9 @@ class Lifecycle:
         self._suspended: list[tuple[Mind, Intention]] = []
         self.state = UNCONFIGURED
         system.scheduler.pause()
+        for host in system.directory:
+            _hold(host)
+        system.directory.watch(self._agent_changed)
         event_type = "lifecycle_msgs/msg/TransitionEvent"
         self._events = backend.publisher("~/transition_event", event_type, QoS())
         for name, kind, answer in (
@@ -103,6 +108,11 @@ class Lifecycle:
             ("get_transition_graph", "GetAvailableTransitions", lambda _: self._described(list(TRANSITIONS))),
         ):
             backend.service(f"~/{name}", _SERVICES + kind, answer)
+
+    def _agent_changed(self, name: str, present: bool) -> None:
+        host = self._system.directory.find(name) if present else None
+        if host is not None and self.state != ACTIVE:
+            _hold(host)
 
     def _possible(self) -> list[Transition]:
         return [each for each in TRANSITIONS if each.start == self.state]
@@ -169,6 +179,9 @@ class Lifecycle:
                 resume_intention(mind, intention)
                 mind.architecture.ready()
         self._suspended.clear()
+        for host in self._system.directory:
+            if isinstance(host, PythonAgentHost):
+                host.release()
         self._system.scheduler.resume()
         if self._door is not None:
             self._door.active = True
@@ -177,6 +190,7 @@ class Lifecycle:
         if self._door is not None:
             self._door.active = False
         for host in self._system.directory:
+            _hold(host)
             if isinstance(host.mind, Mind):
                 self._suspend(host.mind)
         self._system.scheduler.pause()
@@ -194,6 +208,12 @@ class Lifecycle:
             self._deactivate()
         self._cleanup()
         self._system.clock.call_later(LEAVING, lambda: self._system.stop_system(0.0, 0))
+
+
+def _hold(host: AgentHost) -> None:
+    """Hold an agent in Python; the others have no turns."""
+    if isinstance(host, PythonAgentHost):
+        host.hold()
 
 
 def _state(number: int) -> Fields:

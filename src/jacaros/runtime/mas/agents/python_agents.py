@@ -23,6 +23,7 @@ from jacaros.runtime.clock import Clock
 from jacaros.runtime.errors import JacarosError
 from jacaros.runtime.files.python_modules import UNSEEN, ModuleUnreadable, ProjectModules
 from jacaros.runtime.files.texts import suggestion
+from jacaros.runtime.mas.agents.gate import Gate
 from jacaros.runtime.mas.agents.host import ADD_ENVIRONMENT, PATIENCE, AgentHost, Run, without_exit
 from jacaros.runtime.mas.agents.options import mind_options
 from jacaros.runtime.mas.console import place_of_fault, places_of_fault
@@ -61,6 +62,7 @@ class PythonAgentHost(AgentHost):
         self._observer: OperationObserver | None = None
         self._tasks: dict[asyncio.Task[Any], None] = {}
         self._leaving = self._closed = False
+        self._gate = Gate()
         agent._host = self  # pyright: ignore[reportAttributeAccessIssue] - `send` is a field that holds a function
 
     @property
@@ -74,6 +76,18 @@ class PythonAgentHost(AgentHost):
             self._session.observer = observer
 
     # ---- lifecycle
+
+    def hold(self) -> None:
+        """Hold its tasks before their next steps, and pause its operations, until `release`."""
+        self._gate.close()
+        if self._session is not None:
+            self._session.hold()
+
+    def release(self) -> None:
+        """Let it continue."""
+        self._gate.open()
+        if self._session is not None:
+            self._session.release()
 
     def begin(self, goals: Sequence[LiteralNode] | None) -> None:
         """Start the agent in the next turn of the event loop. It has no goals."""
@@ -121,7 +135,9 @@ class PythonAgentHost(AgentHost):
         if self._leaving:
             work.close()
             raise JacarosError(f"agent {self.name} is shutting down and cannot start tasks")
-        task = asyncio.get_running_loop().create_task(without_exit(work), name=f"agent {self.name}")
+        task = asyncio.get_running_loop().create_task(
+            without_exit(self._gate.through(work)), name=f"agent {self.name}"
+        )
         self._tasks[task] = None
         self.task_activity.add(task)
         # A task that is cancelled before its first step has not awaited the coroutine.
@@ -172,6 +188,7 @@ class PythonAgentHost(AgentHost):
             return
         super().halt()
         self._leaving = True
+        self._gate.open()
         for task in tuple(self._tasks):
             task.cancel()
         if self._session is not None:
@@ -249,6 +266,7 @@ class PythonAgentHost(AgentHost):
         self._check()
         with self.task_activity.under_way():
             await self.system.clock.sleep(seconds)
+            await self._gate.passed()
         self.system.clock.busy(1)
 
     async def turn(self) -> None:
@@ -257,6 +275,7 @@ class PythonAgentHost(AgentHost):
         self.system.clock.busy(1)
         with self.task_activity.under_way():
             await asyncio.sleep(0)
+            await self._gate.passed()  # for tasks that the agent has not started as its own, too
 
     # ---- the environment
 
