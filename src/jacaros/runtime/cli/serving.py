@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, fields
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -110,9 +111,9 @@ class RequestedService:
         tokens = None if self.tokens is None else read_tokens(self.tokens)
         mounts = {}
         if find_spec("mcp") is not None:
-            from jacaros.serving.mcp.http import PATH, mcp_app
+            from jacaros.serving.mcp.http import PATH, McpOverHttp
 
-            mounts[PATH] = mcp_app(mas)
+            mounts[PATH] = partial(McpOverHttp, mas)
         door = HttpDoor(mas, Address(host, port, self.tls_cert, self.tls_key), tokens, mounts)
         log(f"serve: {door.url}", "info")
         if console is not None:

@@ -17,11 +17,12 @@ from jacaros.serving.arguments import reasons_of
 from jacaros.serving.callers import RequestError
 from jacaros.serving.crossing import Lagging, Reply
 from jacaros.serving.goals import REFUSED_STATE, RequestedGoal
-from jacaros.serving.http.clients import Client, Clients, Stream, encoded
+from jacaros.serving.http.clients import Client, Stream, encoded
 from jacaros.serving.http.endpoint import Answer, Endpoint, unknown
 from jacaros.serving.http.guard import arguments_of, caller_of
 from jacaros.serving.http.openapi import described, document
 from jacaros.serving.http.problems import HEADERS, of_error, problem
+from jacaros.serving.remote import RemoteCallers
 from jacaros.serving.service import Session
 
 SOON = 0.25
@@ -44,7 +45,7 @@ class Resources:
         title: name of the run.
     """
 
-    def __init__(self, clients: Clients, title: str) -> None:
+    def __init__(self, clients: RemoteCallers[Client], title: str) -> None:
         self._clients, self._title = clients, title
 
     def app(self, mounts: Mapping[str, ASGIApp]) -> ASGIApp:

@@ -1,20 +1,17 @@
-"""Clients over HTTP: a session for each caller, which ends some time after its last request."""
+"""Clients over HTTP, and their event streams."""
 
 import asyncio
 import json
-import time
-from collections.abc import Callable, Coroutine, Iterable, Mapping
-from contextlib import suppress
-from typing import Any, TypeVar
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import ExitStack, suppress
+from typing import Any
 
 from jacaros.serving.callers import Caller, RequestError
-from jacaros.serving.crossing import Crossing, Lagging, Outbox, Reply
+from jacaros.serving.crossing import Crossing, Lagging, Outbox
 from jacaros.serving.goals import OVER
+from jacaros.serving.remote import RemoteCaller
 from jacaros.serving.service import Event, Service, Session
 
-T = TypeVar("T")
-LEASE = 15.0
-"""Seconds after its last request, and the end of its last event stream, when a caller counts as gone."""
 MOST_STREAMS = 128
 """Maximum number of event streams of one caller."""
 
@@ -22,78 +19,20 @@ Stream = Outbox[str | None]
 """Events as JSON for one stream; None ends it."""
 
 
-class Client:
-    """A caller over HTTP. Methods that begin with an underscore belong to the loop of the run.
-
-    Args:
-        caller: who it is.
-        crossing: the way to the run.
-        service: the service of the run.
-    """
+class Client(RemoteCaller):
+    """A caller over HTTP, with its event streams."""
 
     def __init__(self, caller: Caller, crossing: Crossing, service: Service) -> None:
-        self.caller = caller
-        self._crossing, self._service = crossing, service
-        self._session: Session | None = None
+        super().__init__(caller, crossing, service)
         self.streams: dict[Stream, None] = {}
-        self._busy, self._seen = 0, time.monotonic()
         self._events = Outbox[tuple[Event, Stream | None]](asyncio.get_running_loop())
         self._distributing: asyncio.Task[None] | None = None
 
-    # ---- requests
-
-    async def do(self, request: Callable[[Session], T]) -> T:
-        """Call a function with the session, on the loop of the run."""
-        with self._present():
-            return await self._crossing.call(lambda: request(self._opened()))
-
-    def ask(self, request: Callable[[Session, Reply[T]], object]) -> "asyncio.Future[T]":
-        """Call a function with the session and what takes the answer, now or later, on the loop of the run."""
-        answer: asyncio.Future[T] = self._crossing.ask(lambda reply: request(self._opened(), reply))
-        self.came()
-        answer.add_done_callback(lambda _: self.went())
-        return answer
-
-    async def wait(self, request: Callable[[Session], Coroutine[Any, Any, T]]) -> T:
-        """Await a coroutine function with the session, on the loop of the run."""
-
-        async def start() -> T:
-            return await request(self._opened())
-
-        with self._present():
-            return await self._crossing.wait(start)
-
-    def _present(self) -> "_Presence":
-        return _Presence(self)
-
-    def came(self) -> None:
-        """The caller is here."""
-        self._busy += 1
-
-    def went(self) -> None:
-        """A request of the caller has ended."""
-        self._busy -= 1
-        self._seen = time.monotonic()
-
-    @property
-    def is_gone(self) -> bool:
-        """Whether the caller has no stream and has not asked for some time."""
-        return not self._busy and not self.streams and time.monotonic() - self._seen > LEASE
-
     async def leave(self) -> None:
         """End the session."""
-        await self._crossing.call(self._close)
+        await super().leave()
         if self._distributing is not None:
             self._distributing.cancel()
-
-    def _close(self) -> None:
-        if self._session is not None:
-            self._session.close()
-
-    def _opened(self) -> Session:
-        if self._session is None or self._session.closed:
-            self._session = self._service.open(self.caller)
-        return self._session
 
     # ---- events
 
@@ -110,40 +49,35 @@ class Client:
             raise RequestError("too_many_requests", f"{self.caller} has {MOST_STREAMS} event streams")
         stream = Stream(asyncio.get_running_loop())
         self.streams[stream] = None
+        self.came()
         if self._distributing is None:
             self._distributing = asyncio.create_task(self._distribute())
         try:
             return stream, await self.do(lambda session: self._listen(session, stream, list(beliefs)))
         except BaseException:
-            self.streams.pop(stream)
+            self._forget(stream)
             raise
 
     async def end(self, stream: Stream, stop: Callable[[], None]) -> None:
         """End a stream."""
-        self.streams.pop(stream, None)
-        self._seen = time.monotonic()
+        self._forget(stream)
         with suppress(RequestError):
             await self._crossing.call(stop)
 
+    def _forget(self, stream: Stream) -> None:
+        self.streams.pop(stream)
+        self.went()
+
     def _listen(self, session: Session, stream: Stream, beliefs: list[tuple[str, str]]) -> Callable[[], None]:
-        ends: list[Callable[[], None]] = []
-
-        def stop() -> None:
-            for end in ends:
-                end()
-
-        try:
+        with ExitStack() as ends:
             for agent, name in beliefs:
-                ends.append(self._watch(session, stream, agent, name))
-        except RequestError:
-            stop()
-            raise
-        if self._hear not in session.listeners:
-            session.listen(self._hear)
-        for goal in session.goals():
-            if not goal.over:
-                self._events.put(({"event": "goal", **goal.data()}, stream))
-        return stop
+                ends.callback(self._watch(session, stream, agent, name))
+            if self._hear not in session.listeners:
+                session.listen(self._hear)
+            for goal in session.goals():
+                if not goal.over:
+                    self._events.put(({"event": "goal", **goal.data()}, stream))
+            return ends.pop_all().close
 
     def _watch(self, session: Session, stream: Stream, agent: str, name: str) -> Callable[[], None]:
         subject = "belief", agent, name, id(stream)
@@ -176,17 +110,6 @@ class Client:
             stream.put(None)
 
 
-class _Presence:
-    def __init__(self, client: Client) -> None:
-        self._client = client
-
-    def __enter__(self) -> None:
-        self._client.came()
-
-    def __exit__(self, *_: object) -> None:
-        self._client.went()
-
-
 def _subject(event: Event) -> tuple[str, ...] | None:
     """Return of what only the newest event matters: the progress of a goal, but not its states."""
     if event["event"] == "belief":
@@ -199,38 +122,3 @@ def _subject(event: Event) -> tuple[str, ...] | None:
 def encoded(data: Mapping[str, Any]) -> str:
     """Return JSON in one line."""
     return json.dumps(data, separators=(",", ":"))
-
-
-class Clients:
-    """All clients, by caller.
-
-    Args:
-        crossing: the way to the run.
-        service: the service of the run.
-    """
-
-    def __init__(self, crossing: Crossing, service: Service) -> None:
-        self._crossing, self._service = crossing, service
-        self._known: dict[Caller, Client] = {}
-
-    def of(self, caller: Caller) -> Client:
-        """Return the client of a caller."""
-        found = self._known.get(caller)
-        if found is None:
-            found = self._known[caller] = Client(caller, self._crossing, self._service)
-        return found
-
-    async def look(self) -> None:
-        """End the sessions of callers that are gone, again and again."""
-        while True:
-            await asyncio.sleep(LEASE / 10)
-            for client in tuple(self._known.values()):
-                if client.is_gone:
-                    del self._known[client.caller]
-                    with suppress(RequestError):
-                        await client.leave()
-
-    def close(self) -> None:
-        """End all streams: the run has ended."""
-        for client in self._known.values():
-            client.end_streams()

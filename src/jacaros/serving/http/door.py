@@ -21,9 +21,10 @@ from jacaros.serving import running
 from jacaros.serving.access import LOOPBACK, Hosts, listening_socket
 from jacaros.serving.crossing import Crossing, DoorThread
 from jacaros.serving.http.app import Resources
-from jacaros.serving.http.clients import Clients
+from jacaros.serving.http.clients import Client
 from jacaros.serving.http.guard import LARGEST, Guard
 from jacaros.serving.http.protocol import MOST_CONNECTIONS, LimitedConnection, LimitedWebSocket
+from jacaros.serving.remote import RemoteCallers
 from jacaros.serving.running import RunningService
 from jacaros.serving.service import service_of
 from jacaros.serving.tokens import Tokens
@@ -115,7 +116,7 @@ class HttpDoor:
             self._system.console.log(text + trace, "error")
 
     async def _serve(self, crossing: Crossing) -> None:
-        clients = Clients(crossing, self._service)
+        clients = RemoteCallers(lambda caller: Client(caller, crossing, self._service))
         async with AsyncExitStack() as stack:
             mounts = {
                 path: await stack.enter_async_context(make(crossing)) for path, make in self._mounts.items()
@@ -128,7 +129,8 @@ class HttpDoor:
             try:
                 await asyncio.shield(serving)
             except asyncio.CancelledError:
-                clients.close()
+                for client in clients:
+                    client.end_streams()
                 server.should_exit = True
                 await serving
             finally:

@@ -1,86 +1,42 @@
-"""Clients over MCP: a session for each caller, and the goals it pursues."""
+"""Clients over MCP, and the goals they pursue."""
 
 import asyncio
 import time
-from collections.abc import Awaitable, Callable, Coroutine, Mapping
-from contextlib import suppress
-from typing import Any, TypeVar
+from collections.abc import Awaitable, Callable, Mapping
+from contextlib import ExitStack, suppress
+from math import inf
+from typing import Any
 
 from jacaros.agents.language.offers import Offer
 from jacaros.serving.callers import Caller, RequestError
 from jacaros.serving.crossing import Crossing, Outbox
 from jacaros.serving.goals import RequestedGoal
 from jacaros.serving.mcp.tools import OfferedTool, named_tools
+from jacaros.serving.remote import RemoteCaller
 from jacaros.serving.service import Event, Service, Session
 
-T = TypeVar("T")
-LOOK = 1.0
+LOOK = 0.5
 """Seconds between looks at what an agent does for a goal whose client wants to know."""
 Report = Callable[[float, float | None, str | None], Awaitable[None]]
 """Reports progress: how far, of how much, and what the agent does."""
 
 
-class Client:
-    """A caller over MCP. Methods that begin with an underscore belong to the loop of the run.
-
-    Args:
-        caller: who it is.
-        crossing: the way to the run.
-        service: the service of the run.
+class Client(RemoteCaller):
+    """A caller over MCP.
 
     Attributes:
         left: whether its connection has ended. The end of a request then is not a wish to cancel its goal.
     """
 
     def __init__(self, caller: Caller, crossing: Crossing, service: Service) -> None:
-        self.caller, self.left = caller, False
-        self._crossing, self._service = crossing, service
-        self._session: Session | None = None
+        super().__init__(caller, crossing, service)
+        self.left = False
         self._tools: dict[str, OfferedTool] = {}
-        self._busy, self._seen = 0, time.monotonic()
-
-    # ---- presence
-
-    def came(self) -> None:
-        """A request has come."""
-        self._busy += 1
-
-    def went(self) -> None:
-        """The connection of a request has ended."""
-        self._busy -= 1
-        self._seen = time.monotonic()
-
-    def is_gone(self, lease: float) -> bool:
-        """Whether it has had no connection for some seconds."""
-        return not self._busy and time.monotonic() - self._seen > lease
 
     async def leave(self) -> None:
         """End its session."""
         self.left = True
-        await self._crossing.call(self._close)
-
-    def _close(self) -> None:
-        if self._session is not None:
-            self._session.close()
-
-    def _opened(self) -> Session:
-        if self._session is None or self._session.closed:
-            self._session = self._service.open(self.caller)
-        return self._session
-
-    # ---- requests
-
-    async def do(self, request: Callable[[Session], T]) -> T:
-        """Call a function with the session, on the loop of the run."""
-        return await self._crossing.call(lambda: request(self._opened()))
-
-    async def wait(self, request: Callable[[Session], Coroutine[Any, Any, T]]) -> T:
-        """Await a coroutine function with the session, on the loop of the run."""
-
-        async def start() -> T:
-            return await request(self._opened())
-
-        return await self._crossing.wait(start)
+        await super().leave()
 
     async def offered(self) -> list[tuple[str, Offer]]:
         """Return agents, and what they offer to the caller."""
@@ -115,36 +71,23 @@ class Client:
         """
         pursuit = Pursuit(self, tool, arguments)
         pursuing = asyncio.create_task(self.wait(pursuit.run))
-        reporting = None if report is None else asyncio.create_task(self._report(pursuit, report))
-        try:
-            await asyncio.wait({pursuing}, timeout=patience)
-            if pursuing.done():
-                return await pursuing
-            pursuit.detached = True
-            return await self.do(lambda _: pursuit.data())
-        finally:
-            pursuing.cancel()
-            if reporting is not None:
-                reporting.cancel()
-
-    async def _report(self, pursuit: "Pursuit", report: Report) -> None:
-        news: Outbox[None] = Outbox(asyncio.get_running_loop())
-        stop = await self.do(lambda session: session.listen(lambda event: pursuit.heard(event, news)))
+        until = time.monotonic() + (inf if patience is None else patience)
         shown, last = 0.0, None
         try:
-            while True:
-                with suppress(TimeoutError):
-                    async with asyncio.timeout(LOOK):
-                        await news.take()
-                now = await self.do(lambda _: pursuit.progress())
-                if now is None or now == last:
-                    continue
-                fraction, last = now[0], now
-                shown = max(fraction or 0.0, shown + 1e-6)  # clients expect it to increase
-                await report(shown, None if fraction is None else 1.0, now[1] or None)
+            await asyncio.sleep(0)  # it begins, even if there is no patience
+            while not pursuing.done() and (rest := until - time.monotonic()) > 0:
+                await asyncio.wait({pursuing}, timeout=patience if report is None else min(LOOK, rest))
+                now = None if report is None else await self.do(lambda _: pursuit.progress())
+                if report is not None and now is not None and now != last:
+                    fraction, last = now[0], now
+                    shown = max(fraction or 0.0, shown + 1e-6)  # clients expect it to increase
+                    await report(shown, None if fraction is None else 1.0, now[1] or None)
+            pursuit.detached = not pursuing.done()
+            # A later task than `run`: the goal has been given, or the request had no effect.
+            found = await self.wait(pursuit.data) if pursuit.detached else None
+            return found or await pursuing
         finally:
-            with suppress(RequestError):
-                self._crossing.post(stop)
+            pursuing.cancel()
 
     async def watch(self, beliefs: Mapping[str, tuple[str, str]], changed: Outbox[str]) -> Callable[[], None]:
         """Put the address of each belief that changes into an outbox, and "" when agents start or end.
@@ -156,23 +99,7 @@ class Client:
             beliefs: agents and names of the beliefs, by address.
             changed: where to put the addresses.
         """
-
-        def begin(session: Session) -> Callable[[], None]:
-            ends = [_hear_agents(session, changed)]
-
-            def stop() -> None:
-                for end in ends:
-                    end()
-
-            try:
-                for uri, (agent, name) in beliefs.items():
-                    ends.append(_watch(session, agent, name, uri, changed))
-            except RequestError:
-                stop()
-                raise
-            return stop
-
-        stop = await self.do(begin)
+        stop = await self.do(lambda session: _watch(session, beliefs, changed))
 
         def end() -> None:
             with suppress(RequestError):  # the run has ended
@@ -181,24 +108,25 @@ class Client:
         return end
 
 
-def _hear_agents(session: Session, changed: Outbox[str]) -> Callable[[], None]:
-    def hear(event: Event) -> None:
-        if event["event"] in ("agent_started", "agent_ended"):
-            changed.put("", "")
-
-    return session.listen(hear)
-
-
-def _watch(session: Session, agent: str, name: str, uri: str, changed: Outbox[str]) -> Callable[[], None]:
+def _watch(
+    session: Session, beliefs: Mapping[str, tuple[str, str]], changed: Outbox[str]
+) -> Callable[[], None]:
     begun = False
 
-    def tell(_: object) -> None:
+    def put(uri: str) -> None:
         if begun:  # the first call only says how it is now
             changed.put(uri, uri)
 
-    end = session.watch(agent, name, tell)
-    begun = True
-    return end
+    def hear(event: Event) -> None:
+        if event["event"] in ("agent_started", "agent_ended"):
+            put("")
+
+    with ExitStack() as ends:
+        ends.callback(session.listen(hear))
+        for uri, (agent, name) in beliefs.items():
+            ends.callback(session.watch(agent, name, lambda _, uri=uri: put(uri)))  # type: ignore[misc]
+        begun = True
+        return ends.pop_all().close
 
 
 class Pursuit:
@@ -229,16 +157,9 @@ class Pursuit:
             raise
         return goal.data()
 
-    def data(self) -> dict[str, Any]:
-        """Return the data of the goal."""
-        if self._goal is None:
-            raise RequestError("unresponsive", "the run has not taken the goal yet; ask again")
-        return self._goal.data()
-
-    def heard(self, event: Event, news: Outbox[None]) -> None:
-        """Take note of an event."""
-        if self._goal is not None and event.get("id") == self._goal.id:
-            news.put(None, "progress")
+    async def data(self, _: Session) -> dict[str, Any] | None:
+        """Return the data of the goal; None if it has not been given."""
+        return None if self._goal is None else self._goal.data()
 
     def progress(self) -> tuple[float | None, str] | None:
         """Return how far the goal is, and what the agent does; None before it is given, and after its end."""

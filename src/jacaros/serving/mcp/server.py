@@ -3,8 +3,8 @@
 import asyncio
 import json
 import logging
-from collections.abc import Callable, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 import mcp_types as types
@@ -19,18 +19,12 @@ from mcp.server.subscriptions import (
 from mcp.shared.exceptions import MCPError
 
 from jacaros.agents.language.offers import Offer
-from jacaros.serving.arguments import Data
+from jacaros.serving.arguments import Data, terms_of
 from jacaros.serving.callers import RequestError
 from jacaros.serving.crossing import Outbox
 from jacaros.serving.goals import ACHIEVED, OVER
 from jacaros.serving.mcp.clients import Client
-from jacaros.serving.mcp.tools import (
-    OWN_TOOLS,
-    OfferedTool,
-    belief_at,
-    resources_of,
-    tool_of,
-)
+from jacaros.serving.mcp.tools import OWN, OfferedTool, belief_at, own_tools, resources_of, tool_of
 from jacaros.serving.service import Session
 from jacaros.version import VERSION
 
@@ -65,7 +59,6 @@ class McpServer:
         self, name: str, client_of: Callable[[Context], Client], patience: float | None = None
     ) -> None:
         self._client_of, self._patience = client_of, patience
-        self._watches: dict[tuple[Client, str, str], asyncio.Task[None]] = {}
         self._own: Mapping[str, Callable[[Client, Mapping[str, Any]], Any]] = {
             "goals": self._goals,
             "cancel_goal": self._cancel_goal,
@@ -80,8 +73,6 @@ class McpServer:
             on_call_tool=self._call_tool,
             on_list_resources=self._list_resources,
             on_read_resource=self._read_resource,
-            on_subscribe_resource=self._subscribe,
-            on_unsubscribe_resource=self._unsubscribe,
             on_subscriptions_listen=self._listen,
         )
         self.server.middleware.clear()  # the run has its own recording
@@ -91,18 +82,16 @@ class McpServer:
     # ---- tools
 
     async def _list_tools(self, ctx: Context, _: object) -> types.ListToolsResult:
-        with _Answering():
+        with _answering():
             tools = await self._client_of(ctx).tools()
-        return types.ListToolsResult(
-            tools=[*(tool_of(name, tool) for name, tool in tools.items()), *OWN_TOOLS]
-        )
+        return types.ListToolsResult(tools=[*(tool_of(*each) for each in tools.items()), *own_tools()])
 
     async def _call_tool(self, ctx: Context, params: types.CallToolRequestParams) -> Result:
         client, given = self._client_of(ctx), params.arguments or {}
         try:
             own = self._own.get(params.name)
             if own is not None:
-                _check(params.name, given)
+                terms_of(OWN[params.name], given)
                 result: Result = await own(client, given)
                 return result
             tool = await client.tool(params.name)
@@ -131,10 +120,10 @@ class McpServer:
         return _told(_json(await client.do(shown)))
 
     async def _cancel_goal(self, client: Client, given: Mapping[str, Any]) -> Result:
-        id = given.get("id")
+        id = given["id"]
 
         async def cancel(session: Session) -> list[dict[str, Data]]:
-            found = [each for each in session.goals() if not each.over] if id is None else [session.goal(id)]
+            found = [each for each in session.goals() if not each.over] if id == "all" else [session.goal(id)]
             for goal in found:
                 session.cancel(goal.id)
             for goal in found:
@@ -155,7 +144,7 @@ class McpServer:
     # ---- resources
 
     async def _list_resources(self, ctx: Context, _: object) -> types.ListResourcesResult:
-        with _Answering():
+        with _answering():
             offered = await self._client_of(ctx).offered()
         return types.ListResourcesResult(resources=resources_of(offered))
 
@@ -163,7 +152,7 @@ class McpServer:
         self, ctx: Context, params: types.ReadResourceRequestParams
     ) -> types.ReadResourceResult:
         agent, name = _belief(params.uri)
-        with _Answering():
+        with _answering():
             facts = await self._client_of(ctx).do(lambda session: session.beliefs(agent, name))
         content = types.TextResourceContents(uri=params.uri, mime_type="application/json", text=_json(facts))
         return types.ReadResourceResult(contents=[content])
@@ -176,7 +165,7 @@ class McpServer:
         beliefs = {uri: _belief(uri) for uri in (wanted.resource_subscriptions or ())[:MOST_SUBSCRIPTIONS]}
         bus, changed = InMemorySubscriptionBus(), Outbox[str](asyncio.get_running_loop())
         client = self._client_of(ctx)
-        with _Answering():
+        with _answering():
             stop = await client.watch(beliefs, changed)
         publishing = asyncio.create_task(_publish(changed, bus))
         try:
@@ -185,45 +174,14 @@ class McpServer:
             publishing.cancel()
             stop()
 
-    async def _subscribe(self, ctx: Context, params: types.SubscribeRequestParams) -> types.EmptyResult:
-        """Notify a client of an earlier version of the protocol of changes of a belief."""
-        client, key = self._client_of(ctx), self._key(ctx, params.uri)
-        for old in [each for each in self._watches if each == key or each[0].left]:
-            await self._end_watch(old)
-        own = [each for each in self._watches if each[0] is client]
-        if len(own) >= MOST_SUBSCRIPTIONS:
-            await self._end_watch(own[0])
-        changed = Outbox[str](asyncio.get_running_loop())
-        with _Answering():
-            stop = await client.watch({params.uri: _belief(params.uri)}, changed)
-        self._watches[key] = asyncio.create_task(_notify(changed, ctx, stop))
-        return types.EmptyResult()
 
-    async def _unsubscribe(self, ctx: Context, params: types.UnsubscribeRequestParams) -> types.EmptyResult:
-        await self._end_watch(self._key(ctx, params.uri))
-        return types.EmptyResult()
-
-    def _key(self, ctx: Context, uri: str) -> tuple[Client, str, str]:
-        headers = {} if ctx.request is None else ctx.request.headers
-        return self._client_of(ctx), headers.get("mcp-session-id", ""), uri
-
-    async def _end_watch(self, key: tuple[Client, str, str]) -> None:
-        watch = self._watches.pop(key, None)
-        if watch is not None:
-            watch.cancel()
-            with suppress(asyncio.CancelledError):
-                await watch
-
-
-class _Answering:
-    """Turns a request that has no effect into an error of the protocol."""
-
-    def __enter__(self) -> None:
-        pass
-
-    def __exit__(self, _: object, error: BaseException | None, __: object) -> None:
-        if isinstance(error, RequestError):
-            raise MCPError(types.INVALID_PARAMS, error.message) from None
+@contextmanager
+def _answering() -> Iterator[None]:
+    """Turn a request that has no effect into an error of the protocol."""
+    try:
+        yield
+    except RequestError as error:
+        raise MCPError(types.INVALID_PARAMS, error.message) from None
 
 
 async def _publish(changed: Outbox[str], bus: InMemorySubscriptionBus) -> None:
@@ -237,35 +195,11 @@ async def _publish(changed: Outbox[str], bus: InMemorySubscriptionBus) -> None:
         await asyncio.sleep(REST)
 
 
-async def _notify(changed: Outbox[str], ctx: Context, stop: Callable[[], None]) -> None:
-    try:
-        while True:
-            for uri in await changed.take():
-                if uri:
-                    await ctx.session.send_resource_updated(uri)
-            await asyncio.sleep(REST)
-    finally:
-        stop()
-
-
 def _belief(uri: str) -> tuple[str, str]:
     found = belief_at(uri)
     if found is None:
         raise MCPError(types.INVALID_PARAMS, f"unknown resource `{uri[:80]}`")
     return found
-
-
-def _check(name: str, given: Mapping[str, Any]) -> None:
-    schema = next(each.input_schema for each in OWN_TOOLS if each.name == name)
-    wrong = [f"unknown argument `{key[:80]}`" for key in given if key not in schema["properties"]]
-    wrong += [f"`{key}` is missing" for key in schema["required"] if key not in given]
-    wrong += [
-        f"`{key}` must be a text of at most 500 characters"
-        for key, value in given.items()
-        if key in schema["properties"] and not (isinstance(value, str) and len(value) <= 500)
-    ]
-    if wrong:
-        raise RequestError("invalid_arguments", "; ".join(wrong))
 
 
 def _outcome(offer: Offer, goal: Mapping[str, Any]) -> Result:

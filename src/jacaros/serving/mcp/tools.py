@@ -1,7 +1,7 @@
 """What agents offer, as tools and resources of MCP."""
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 from urllib.parse import quote, unquote, urlsplit
@@ -20,7 +20,6 @@ _BUSY: Final = {
     "replace": "a further one replaces the oldest",
 }
 _FORMS = "; ".join(f"`{form}`: {answer}" for form, answer in FORMS.items())
-_TEXT: Final = {"type": "string"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,45 +35,35 @@ class OfferedTool:
     offer: Offer
 
 
-def _own(
-    name: str, doc: str, properties: Mapping[str, str], required: Sequence[str], read_only: bool
-) -> types.Tool:
-    schema = {
-        "type": "object",
-        "properties": {key: {**_TEXT, "description": about} for key, about in properties.items()},
-        "required": list(required),
-        "additionalProperties": False,
-    }
-    hints = types.ToolAnnotations(read_only_hint=read_only, destructive_hint=False, idempotent_hint=True)
-    return types.Tool(name=name, description=doc, input_schema=schema, annotations=hints)
+def _asked(name: str, doc: str) -> tuple[Parameter, ...]:
+    return (Parameter(name, "string", doc=doc),)
 
 
-OWN_TOOLS: Final = (
-    _own("goals", "List the goals that you gave, with their states and ids, the newest last.", {}, (), True),
-    _own(
+_OWN: Final = (
+    Offer(
+        "question", "goals", doc="List the goals that you gave, with their states and ids, the newest last."
+    ),
+    Offer(
+        "tell",
         "cancel_goal",
+        _asked("id", "id of the goal, from `goals`; `all` for all goals that you gave"),
         "Stop a goal: the agent drops it and cleans up, so a robot that moves for it stops.",
-        {"id": "id of the goal, from `goals`; all goals that you gave if you leave it out"},
-        (),
-        False,
     ),
-    _own(
+    Offer(
+        "question",
         "why",
+        _asked("question", "such as `why did the robot stop`"),
         f"Explain what happened in the run, and why. Questions: {_FORMS}.",
-        {"question": "such as `why did the robot stop`"},
-        ("question",),
-        True,
     ),
-    _own(
+    Offer(
+        "question",
         "why_not",
+        _asked("what", "such as `go to the dock`, `!deliver(_, kitchen)` or `plan @label`"),
         "Explain why something did not happen.",
-        {"what": "such as `go to the dock`, `!deliver(_, kitchen)` or `plan @label`"},
-        ("what",),
-        True,
     ),
 )
-"""Tools that all runs have."""
-_OWN_NAMES: Final = frozenset(each.name for each in OWN_TOOLS)
+OWN: Final = {each.name: each for each in _OWN}
+"""Tools that all runs have, by name."""
 
 
 def named_tools(offered: Sequence[tuple[str, Offer]]) -> dict[str, OfferedTool]:
@@ -88,7 +77,7 @@ def named_tools(offered: Sequence[tuple[str, Offer]]) -> dict[str, OfferedTool]:
             :LONGEST_NAME
         ]
         name, number = wanted, 1
-        while name in tools or name in _OWN_NAMES:
+        while name in tools or name in OWN:
             number += 1
             name = f"{wanted[: LONGEST_NAME - 4]}_{number}"
         tools[name] = OfferedTool(agent, offer)
@@ -97,6 +86,11 @@ def named_tools(offered: Sequence[tuple[str, Offer]]) -> dict[str, OfferedTool]:
 
 def _called(agent: str, offer: Offer, offered: Iterable[tuple[str, Offer]]) -> str:
     return called(offer, [each for name, each in offered if name == agent])
+
+
+def own_tools() -> list[types.Tool]:
+    """Return the descriptions of the tools that all runs have."""
+    return [_tool(each.name, each, each.doc) for each in _OWN]
 
 
 def tool_of(name: str, tool: OfferedTool) -> types.Tool:
@@ -109,18 +103,17 @@ def tool_of(name: str, tool: OfferedTool) -> types.Tool:
         schema = {"type": "object", "properties": {"answers": rows}, "required": ["answers"]}
     elif results:
         schema = _open_schema(results)
-    return types.Tool(
-        name=name,
-        title=f"{tool.agent}: {offer.name}",
-        description=_description(tool),
-        input_schema=schema_of(offer.inputs),
-        output_schema=schema,
-        annotations=types.ToolAnnotations(
-            read_only_hint=offer.what == "question",
-            destructive_hint="destructive" in offer.hints,
-            idempotent_hint=offer.what != "goal" or "idempotent" in offer.hints,
-        ),
+    return _tool(name, offer, _description(tool), title=f"{tool.agent}: {offer.name}", output_schema=schema)
+
+
+def _tool(name: str, offer: Offer, description: str, **more: Any) -> types.Tool:
+    hints = types.ToolAnnotations(
+        read_only_hint=offer.what == "question",
+        destructive_hint="destructive" in offer.hints,
+        idempotent_hint=offer.what != "goal" or "idempotent" in offer.hints,
     )
+    schema = schema_of(offer.inputs)
+    return types.Tool(name=name, description=description, input_schema=schema, annotations=hints, **more)
 
 
 def _open_schema(results: Sequence[Parameter]) -> dict[str, Any]:

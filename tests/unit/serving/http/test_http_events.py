@@ -12,7 +12,8 @@ import pytest
 import websockets
 from http_lab import PROGRAM, Lab, problem, serve, token
 
-from jacaros.serving.http import clients, protocol
+from jacaros.serving import remote
+from jacaros.serving.http import protocol
 from jacaros.serving.http.app import messages
 from jacaros.serving.http.clients import Stream
 
@@ -154,7 +155,7 @@ def test_a_browser_hears_events() -> None:
 
 @pytest.mark.parametrize("way", ["stream", "waiting"])
 def test_goals_of_a_killed_client_end_as_declared(way: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(clients, "LEASE", 0.3)
+    monkeypatch.setattr(remote, "LEASE", 0.3)
 
     async def test(lab: Lab) -> None:
         address = httpx.URL(lab.door.url)
