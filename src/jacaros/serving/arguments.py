@@ -298,6 +298,11 @@ def schema_of(parameters: Sequence[Parameter]) -> dict[str, Any]:
     }
 
 
+def results_schema(offer: Offer) -> dict[str, Any]:
+    """Return the JSON schema of results, of which a program may leave some out."""
+    return schema_of([each for each in offer.parameters if each.output]) | {"required": []}
+
+
 def described(offer: Offer) -> dict[str, Any]:
     """Return what is offered as JSON data, with the JSON schemas of its arguments and results."""
     found: dict[str, Any] = {
@@ -305,10 +310,10 @@ def described(offer: Offer) -> dict[str, Any]:
         "form": str(offer),
         "doc": offer.doc,
         "roles": sorted(offer.roles),
+        "arguments": schema_of(offer.inputs),
     }
-    found["arguments"] = schema_of(offer.inputs)
     if offer.what in ("goal", "question"):
-        found["results"] = schema_of([each for each in offer.parameters if each.output])
+        found["results"] = results_schema(offer)
     if offer.what == "goal":
         found |= {"at_most": offer.at_most, "when_busy": offer.when_busy, "when_left": offer.when_left}
         found["hints"] = sorted(offer.hints)

@@ -103,7 +103,7 @@ class Client:
         """Return what all agents offer."""
         found = []
         for agent in self.agents():
-            for kind, entries in self._ask("GET", f"/agents/{quote(agent, '')}").items():
+            for kind, entries in self._ask("GET", _below(agent)).items():
                 if isinstance(entries, list):
                     found += [_offered(agent, kind, each) for each in entries]
         return found
@@ -117,7 +117,7 @@ class Client:
             ServiceError: the goal is not offered, or its arguments are wrong.
         """
         try:
-            return self._ask("POST", f"/agents/{quote(agent, '')}/goals", {"text": goal})
+            return self._ask("POST", _below(agent, "goals"), {"text": goal})
         except ServiceError as error:
             if error.code != "refused":
                 raise
@@ -125,14 +125,11 @@ class Client:
 
     def ask(self, agent: str, question: str) -> list[Json]:
         """Ask an agent a question, such as ``battery(Level)``. Return the variables of each answer."""
-        found: list[Json] = self._ask("POST", f"/agents/{quote(agent, '')}/questions", {"text": question})[
-            "answers"
-        ]
-        return found
+        return list(self._ask("POST", _below(agent, "questions"), {"text": question})["answers"])
 
     def tell(self, agent: str, belief: str, untell: bool = False) -> None:
         """Tell an agent a belief, or take it back."""
-        self._ask("DELETE" if untell else "POST", f"/agents/{quote(agent, '')}/beliefs", {"text": belief})
+        self._ask("DELETE" if untell else "POST", _below(agent, "beliefs"), {"text": belief})
 
     # ---- goals, beliefs and explanations
 
@@ -142,8 +139,7 @@ class Client:
 
     def goals(self, limit: int = 20) -> list[Json]:
         """Return the newest goals, the newest last."""
-        found: list[Json] = self._ask("GET", f"/goals?limit={limit}")["goals"]
-        return found
+        return list(self._ask("GET", f"/goals?limit={limit}")["goals"])
 
     def cancel(self, id: str) -> Json:
         """Cancel a goal. Return its data."""
@@ -151,23 +147,18 @@ class Client:
 
     def beliefs(self, agent: str, name: str) -> list[Json]:
         """Return the beliefs that an agent offers under a name."""
-        found: list[Json] = self._ask("GET", f"/agents/{quote(agent, '')}/beliefs/{quote(name, '')}")[
-            "beliefs"
-        ]
-        return found
+        return list(self._ask("GET", _below(agent, "beliefs", name))["beliefs"])
 
     def why(self, question: str) -> str:
         """Return an explanation as text."""
-        return str(
-            self._ask("GET", f"/why?{urlencode({'question': question})}", seconds=WAIT + PATIENCE)["text"]
-        )
+        path = f"/why?{urlencode({'question': question})}"
+        return str(self._ask("GET", path, seconds=WAIT + PATIENCE)["text"])
 
     # ---- questions of agents to a person
 
     def questions(self) -> list[Json]:
         """Return the open questions of agents to a person."""
-        found: list[Json] = self._ask("GET", "/questions")["questions"]
-        return found
+        return list(self._ask("GET", "/questions")["questions"])
 
     def answer(self, id: str, given: str | int) -> None:
         """Answer a question with a text, or with the number of an option."""
@@ -246,6 +237,11 @@ class Client:
         if self._tls is None:
             return HTTPConnection(self._host, self._port, timeout=seconds)
         return HTTPSConnection(self._host, self._port, timeout=seconds, context=self._tls)
+
+
+def _below(agent: str, *names: str) -> str:
+    """Return a path below an agent."""
+    return "/".join(["/agents", *(quote(each, "") for each in (agent, *names))])
 
 
 def _tls(certificate: str) -> ssl.SSLContext:

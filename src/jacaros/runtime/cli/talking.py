@@ -67,10 +67,8 @@ def _requests(offer: Offered | None = None) -> Iterator[None]:
     """Turn errors of requests into errors of usage: exit code 1 stands for failed goals and the answer `no`."""
     try:
         yield
-    except ServiceError as error:
+    except (ServiceError, Unreachable) as error:
         raise UsageError(error_text(error, "" if offer is None else offer.form)) from None
-    except Unreachable as error:
-        raise UsageError(str(error)) from None
 
 
 def _request(
@@ -165,7 +163,7 @@ def achieve(words: tuple[str, ...], as_json: bool, url: str | None, token: str |
         except (ServiceError, Unreachable) as error:
             if not pursuit.id:
                 raise
-            click.echo(error_text(error) if isinstance(error, ServiceError) else str(error), err=True)
+            click.echo(error_text(error), err=True)
             return LOST
     if as_json:
         click.echo(json.dumps(goal))

@@ -1,7 +1,7 @@
 """What agents offer, as tools and resources of MCP."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Final
 from urllib.parse import quote, unquote, urlsplit
@@ -10,7 +10,7 @@ import mcp_types as types
 
 from jacaros.agents.language.offers import Offer, Parameter
 from jacaros.look.why.why import FORMS
-from jacaros.serving.arguments import called, schema_of
+from jacaros.serving.arguments import called, results_schema, schema_of
 
 LONGEST_NAME = 64
 """Maximum length of a tool's name that all clients take."""
@@ -96,13 +96,12 @@ def own_tools() -> list[types.Tool]:
 def tool_of(name: str, tool: OfferedTool) -> types.Tool:
     """Return the description of a tool for clients."""
     offer = tool.offer
-    results = [each for each in offer.parameters if each.output]
-    schema: dict[str, Any] | None = None
+    schema: dict[str, Any] | None = results_schema(offer)
     if offer.what == "question":
-        rows = {"type": "array", "items": _open_schema(results)}
+        rows = {"type": "array", "items": schema}
         schema = {"type": "object", "properties": {"answers": rows}, "required": ["answers"]}
-    elif results:
-        schema = _open_schema(results)
+    elif len(offer.inputs) == len(offer.parameters):
+        schema = None  # it has no results
     return _tool(name, offer, _description(tool), title=f"{tool.agent}: {offer.name}", output_schema=schema)
 
 
@@ -114,11 +113,6 @@ def _tool(name: str, offer: Offer, description: str, **more: Any) -> types.Tool:
     )
     schema = schema_of(offer.inputs)
     return types.Tool(name=name, description=description, input_schema=schema, annotations=hints, **more)
-
-
-def _open_schema(results: Sequence[Parameter]) -> dict[str, Any]:
-    """Return the schema of results, of which a program may leave some out."""
-    return schema_of(results) | {"required": []}
 
 
 def _description(tool: OfferedTool) -> str:

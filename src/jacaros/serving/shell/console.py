@@ -12,6 +12,7 @@ from jacaros.runtime.errors import JacarosError
 from jacaros.runtime.mas.system import System
 from jacaros.serving.client import PATIENCE, Client, Unreachable
 from jacaros.serving.shell.dialogue import Dialogue
+from jacaros.serving.shell.wording import error_text
 
 if TYPE_CHECKING:
     from jacaros.serving.shell.terminal import Terminal
@@ -80,7 +81,7 @@ class Console:
                             dialogue.refresh()
         except JacarosError as error:
             if not self._leaves:
-                terminal.show("the system has ended" if isinstance(error, Unreachable) else f"error: {error}")
+                terminal.show("the system has ended" if isinstance(error, Unreachable) else error_text(error))
                 terminal.leave()
 
     def begin(self, system: System, url: str, token: str, certificate: Path | None) -> None:

@@ -1,13 +1,14 @@
 """The lines of a console, and what each of them does."""
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
+from itertools import groupby
 
 from jacaros.runtime.errors import JacarosError, UsageError
 from jacaros.runtime.files.texts import suggestion
 from jacaros.serving.client import Client, Json, Offered, ServiceError
 from jacaros.serving.shell.choice import GOALS, NOUNS, QUESTIONS, TELLS, chosen
-from jacaros.serving.shell.wording import answer_lines, error_text, event_text, row_text, state_text
+from jacaros.serving.shell.wording import answer_lines, error_text, event_text, state_text
 
 HELP = """\
 !deliver("p1", kitchen)  give a goal to the agent that offers it
@@ -27,6 +28,7 @@ SIGNS = {"goals": "!", "questions": "?", "beliefs": "?", "tells": "+"}
 """What a line begins with, by the kind of the offer."""
 KEPT = 1_000
 """Number of goals whose numbers are known."""
+_NOTHING = "no agent offers anything to you"
 _KINDS = {"!": GOALS, "?": QUESTIONS, "+": TELLS, "-": TELLS}
 _REQUEST = re.compile(r"(?:(?P<agent>[\w.]+)\s+)?(?P<sign>[!?+-])\s*(?P<text>.+?)\.?", re.DOTALL)
 
@@ -66,7 +68,7 @@ class Dialogue:
     def greet(self) -> None:
         """Show which agents offer something."""
         names = ", ".join(dict.fromkeys(each.agent for each in self.offers))
-        told = f"agents: {names}" if names else "no agent offers anything to you"
+        told = f"agents: {names}" if names else _NOTHING
         self._show(f"{told}; `help` lists what you can write")
 
     def refresh(self) -> None:
@@ -75,41 +77,38 @@ class Dialogue:
 
     def execute(self, line: str) -> bool:
         """Execute a line. Return False if it fails."""
-        form = [""]
         try:
-            return self._execute(line.strip(), form)
-        except ServiceError as error:
-            self._show(error_text(error, form[0]))
+            return self._execute(line.strip())
         except JacarosError as error:
-            told = str(error)
-            self._show(told if told.startswith("error: ") else f"error: {told}")
+            self._show(error_text(error))
         return False
 
-    def _execute(self, line: str, form: list[str]) -> bool:
+    def _execute(self, line: str) -> bool:
         if not line or line.startswith("//"):
             return True
         name, _, rest = line.partition(" ")
         command = self.commands.get(name)
         if command is not None:
-            return command(rest.strip()) is not False
+            command(rest.strip())
+            return True
         if found := _REQUEST.fullmatch(line):
-            self.refresh()
-            sign, text = found["sign"], found["text"]
-            offer = chosen(self.offers, _KINDS[sign], text, found["agent"] or "", written)
-            form[0] = offer.form
-            return self._request(sign, offer.agent, text)
+            return self._request(found["agent"] or "", found["sign"], found["text"])
         help = suggestion(name, self.commands, "`!goal`, `?question`, `+belief`, `-belief`, or `help`")
         raise UsageError(f"error: unknown command: `{name}`\n  = help: {help}")
 
-    def _request(self, sign: str, agent: str, text: str) -> bool:
-        match sign:
-            case "!":
-                return self._achieve(agent, text)
-            case "?":
-                for each in answer_lines(self._client.ask(agent, text)):
-                    self._show(each)
-            case _:
-                self._client.tell(agent, text, untell=sign == "-")
+    def _request(self, agent: str, sign: str, text: str) -> bool:
+        self.refresh()
+        offer = chosen(self.offers, _KINDS[sign], text, agent, written)
+        try:
+            if sign == "!":
+                return self._achieve(offer.agent, text)
+            if sign == "?":
+                self._show("\n".join(answer_lines(self._client.ask(offer.agent, text))))
+            else:
+                self._client.tell(offer.agent, text, untell=sign == "-")
+        except ServiceError as error:
+            self._show(error_text(error, offer.form))
+            return False
         return True
 
     # ---- goals
@@ -145,14 +144,11 @@ class Dialogue:
         return self._numbers[id]
 
     def _list_goals(self, _: str) -> None:
-        goals = self._client.goals()
-        for each in goals:
-            number = self._number(each["id"])
-            self._show(
-                f"{number:3}  [{each['agent']}] !{each['written']} for {each['caller']}: {state_text(each)}"
-            )
-        if not goals:
-            self._show("no goals")
+        lines = (
+            f"{self._number(each['id']):3}  [{each['agent']}] !{each['written']} for {each['caller']}: {state_text(each)}"
+            for each in self._client.goals()
+        )
+        self._show("\n".join(lines) or "no goals")
 
     def _cancel(self, text: str) -> None:
         id = next((id for id, number in self._numbers.items() if str(number) == text), None)
@@ -165,40 +161,34 @@ class Dialogue:
 
     def _list_agents(self, _: str) -> None:
         self.refresh()
-        agent = ""
-        for each in self.offers:
-            if each.agent != agent:
-                agent = each.agent
-                self._show(agent)
-            sign = SIGNS.get(each.kind, "")
-            self._show(f"  {NOUNS[each.kind]:14} {sign}{each.form}" + (f"  {each.doc}" if each.doc else ""))
-        if not self.offers:
-            self._show("no agent offers anything to you")
+        lines: list[str] = []
+        for agent, offers in groupby(self.offers, lambda each: each.agent):
+            lines.append(agent)
+            lines += [
+                f"  {NOUNS[each.kind]:14} {SIGNS.get(each.kind, '')}{each.form}  {each.doc}".rstrip()
+                for each in offers
+            ]
+        self._show("\n".join(lines) or _NOTHING)
 
     def _list_beliefs(self, _: str) -> None:
         self.refresh()
-        for each in self._beliefs():
-            rows = self._client.beliefs(each.agent, each.name)
-            for row in rows:
-                self._show(f"[{each.agent}] {each.name}: {row_text(row) or 'yes'}")
-            if not rows:
-                self._show(f"[{each.agent}] {each.name}: no")
-
-    def _beliefs(self) -> Iterator[Offered]:
-        found = [each for each in self.offers if each.kind == "beliefs"]
-        if not found:
-            self._show("no agent offers beliefs to you")
-        return iter(found)
+        lines = [
+            f"[{each.agent}] {each.name}: {line}"
+            for each in self.offers
+            if each.kind == "beliefs"
+            for line in answer_lines(self._client.beliefs(each.agent, each.name))
+        ]
+        self._show("\n".join(lines) or "no agent offers beliefs to you")
 
     # ---- questions to a person
 
     def _list_questions(self, _: str) -> None:
-        questions = self._client.questions()
-        for each in questions:
-            options = "".join(f" {number}) {text}" for number, text in enumerate(each["options"], 1))
-            self._show(f"{each['id']}: {each['text']}{options}")
-        if not questions:
-            self._show("no open questions")
+        lines = [
+            f"{each['id']}: {each['text']}"
+            + "".join(f" {number}) {text}" for number, text in enumerate(each["options"], 1))
+            for each in self._client.questions()
+        ]
+        self._show("\n".join(lines) or "no open questions")
 
     def _answer(self, text: str) -> None:
         id, _, given = text.partition(" ")

@@ -3,10 +3,12 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from jacaros.runtime.errors import JacarosError
 from jacaros.runtime.files.texts import help_line
 from jacaros.serving.client import ServiceError
 
 Json = Mapping[str, Any]
+_TOKEN_HELP = "give the system's token: --token TOKEN, or the environment variable JACAROS_TOKEN"
 
 
 def value_text(value: Any) -> str:
@@ -69,18 +71,17 @@ def event_text(event: Json, goal_name: str = "") -> str:
     return f"[{event['agent']}] {told}"
 
 
-def error_text(error: ServiceError, form: str = "") -> str:
+def error_text(error: JacarosError, form: str = "") -> str:
     """Return an error of a request.
 
     Args:
         error: the error.
         form: what the agent offers under the name of the request.
     """
-    if error.code == "unauthorized":
-        help = "give the system's token: --token TOKEN, or the environment variable JACAROS_TOKEN"
-    else:
-        help = f"it is offered as {form}" if error.code == "not_offered" and form else ""
-    lines = [f"error: {error.message}"]
-    if help:
-        lines.append(help_line(help))
-    return "\n".join(lines)
+    told = str(error)
+    code = error.code if isinstance(error, ServiceError) else ""
+    if code == "unauthorized":
+        told += f"\n{help_line(_TOKEN_HELP)}"
+    elif code == "not_offered" and form:
+        told += f"\n{help_line(f'it is offered as {form}')}"
+    return told if told.startswith("error: ") else f"error: {told}"

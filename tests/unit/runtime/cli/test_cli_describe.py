@@ -125,7 +125,7 @@ def test_what_agents_offer_is_described(folder: Path, told: Told) -> None:
     assert (goal["what"], goal["at_most"], goal["hints"]) == ("goal", 2, ["idempotent"])
     assert goal["arguments"]["properties"]["room"] == {"type": "string", "enum": ["kitchen", "office"]}
     assert belief["form"] == "battery(level: number 0..100)"
-    assert goal["results"]["required"] == ["metres"]
+    assert list(goal["results"]["properties"]) == ["metres"]
     assert belief["arguments"]["properties"]["level"] == {"type": "number", "minimum": 0, "maximum": 100}
     (folder / "bob.asl").write_text(OFFERS + "+!broken <- .", encoding="utf-8")
     assert DESCRIBED in told("bob.asl")
