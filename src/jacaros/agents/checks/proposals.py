@@ -33,6 +33,8 @@ _NAMES = """
 HARMLESS: Final = frozenset(f".{name}" for name in _NAMES.split())
 """Internal actions that proposed plans may use: they compute, print, wait, or end the plan."""
 
+_CHOOSING: Final = frozenset({"artifact_id", "aid", "artifact_name", "art", "wid", "wsp"})
+
 
 @dataclass(frozen=True)
 class Permitted:
@@ -109,6 +111,8 @@ def _problems_of(node: nodes.Node, permitted: Permitted) -> Iterator[Diagnostic]
                 )
             yield from _unknown("goal", goal, permitted.goals)
         case nodes.ExternalAction(action):
+            if isinstance(action, nodes.Literal) and _chooses_artifact(action.annotations):
+                yield _error("an annotation that chooses an artifact is not permitted", node.span)
             yield from _unknown("operation", action, permitted.operations)
         case nodes.BeliefChange(_, operand):
             yield from _unknown("change of the belief", operand, permitted.beliefs)
@@ -122,6 +126,14 @@ def _problems_of(node: nodes.Node, permitted: Permitted) -> Iterator[Diagnostic]
             yield _error("plans as values are not permitted", node.span)
         case _:
             pass
+
+
+def _chooses_artifact(annotations: nodes.Annotations | None) -> bool:
+    """Return whether an operation may be that of another artifact than a permitted one."""
+    if annotations is None:
+        return False
+    names = {each.functor for each in annotations.items if isinstance(each, nodes.Literal)}
+    return annotations.tail is not None or not names.isdisjoint(_CHOOSING)
 
 
 def _unknown(what: str, node: nodes.Node, known: Collection[str]) -> Iterator[Diagnostic]:

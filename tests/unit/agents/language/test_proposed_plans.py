@@ -21,6 +21,7 @@ PERMITTED = Permitted(goals=["tour/0", "go/1"], operations=["dock/0"], beliefs=[
             "+!tour : place(X) & not closed(X)\n  <- +seen(X);\n     !go(X)[retry(3)].",
             "-!tour[error(E)] <- .print(E).",
         ],
+        ["+!tour <- dock[timeout(100)]."],
         ["+!go(X) <- if (X > math.sqrt(4)) { dock } else { .wait(100) }."],
         ["+!tour <- .findall(X, seen(X), L); for (.member(Y, L)) { !go(Y) }."],
     ],
@@ -34,6 +35,8 @@ def test_permitted_plans_come_back_one_by_one(plans: list[str]) -> None:
     [
         ("+!tour <- undock.", "operation `undock/0` is not permitted"),
         ("+!tour <- dock(1).", "operation `dock/1` is not permitted"),
+        ("+!tour <- dock[artifact_name(other)].", "an annotation that chooses an artifact is not permitted"),
+        ("+!tour <- dock[timeout(1)|Others].", "an annotation that chooses an artifact is not permitted"),
         ("+!tour <- ns::dock.", "operation: a variable or a namespace is not permitted"),
         ("+!tour <- X = dock; X.", "operation: a variable or a namespace is not permitted"),
         ("+!tour <- !charge.", "goal `charge/0` is not permitted"),
