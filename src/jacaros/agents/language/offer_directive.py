@@ -7,7 +7,8 @@ closed(room: lab | hall)
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Final, TypeGuard
+from functools import reduce
+from typing import Any, Final, TypeGuard
 
 from jacaros.agents.language import nodes
 from jacaros.agents.language.offers import KINDS, OBSERVER, USER, WHAT, Offer, Parameter
@@ -33,29 +34,24 @@ def offer_of(directive: nodes.Literal) -> Offer:
         case (nodes.Literal(what, ()), nodes.Literal() as pattern, *options) if what in WHAT:
             pass
         case (nodes.Literal(what, ()), *_) if what not in WHAT:
-            raise WrongDirective(
-                f"nothing is offered as `{what}`", suggestion(what, WHAT, f"use one of {', '.join(WHAT)}")
-            )
+            help = suggestion(what, WHAT, f"use one of {', '.join(WHAT)}")
+            raise WrongDirective(f"nothing is offered as `{what}`", help)
         case _:
-            raise WrongDirective(
-                "`offer` expects what is offered, its form and options", f"write `{_EXAMPLE}`"
-            )
+            message = "`offer` expects what is offered, its form and options"
+            raise WrongDirective(message, f"write `{_EXAMPLE}`")
     if pattern.negated or pattern.namespace is not None:
         raise WrongDirective("only literals of the default namespace can be offered", None, pattern.span)
     parameters = tuple(map(_parameter, pattern.arguments))
     names = [each.name for each in parameters]
-    for name in names:
-        if names.count(name) > 1:
-            raise WrongDirective(
-                f"two arguments have the name `{name}`", "give each a name of its own", pattern.span
-            )
-    if what != "question" and what != "goal" and any(each.output for each in parameters):
+    if twice := next((each for each in names if names.count(each) > 1), ""):
+        message = f"two arguments have the name `{twice}`"
+        raise WrongDirective(message, "give each a name of its own", pattern.span)
+    if what not in ("question", "goal") and any(each.output for each in parameters):
         raise WrongDirective(f"a {what} has no results", "leave out `out`", pattern.span)
-    default = USER if what in ("goal", "tell") else OBSERVER
-    offer = Offer(what, pattern.functor, parameters, roles=frozenset({default}), span=directive.span)
-    for option in options:
-        offer = _with_option(offer, option)
-    return offer
+    roles = frozenset({USER if what in ("goal", "tell") else OBSERVER})
+    return reduce(
+        _with_option, options, Offer(what, pattern.functor, parameters, "", roles, span=directive.span)
+    )
 
 
 def _with_option(offer: Offer, option: nodes.Term) -> Offer:
@@ -69,17 +65,11 @@ def _with_option(offer: Offer, option: nodes.Term) -> Offer:
             return replace(offer, at_most=int(count))
         case nodes.Literal("at_most", (nodes.Literal("any", ()),)):
             return replace(offer, at_most=None)
-        case nodes.Literal("when_busy" | "when_left", (nodes.Literal(policy, ()),)):
-            if policy in _POLICIES[name]:
-                return (
-                    replace(offer, when_busy=policy)
-                    if name == "when_busy"
-                    else replace(offer, when_left=policy)
-                )
         case nodes.Literal("destructive" | "idempotent", ()):
             return replace(offer, hints=offer.hints | {name})
-        case _:
-            pass
+        case nodes.Literal(_, (nodes.Literal(policy, ()),)) if policy in _POLICIES.get(name, ()):
+            chosen: dict[str, Any] = {name: policy}
+            return replace(offer, **chosen)
     if name in _POLICIES:
         help = f"write `{name}({' | '.join(_POLICIES[name])})`"
     else:
@@ -90,9 +80,8 @@ def _with_option(offer: Offer, option: nodes.Term) -> Offer:
 def _names(given: nodes.Literal | nodes.ListTerm) -> Iterator[str]:
     for each in given.items if isinstance(given, nodes.ListTerm) else (given,):
         if not (isinstance(each, nodes.Literal) and not each.arguments):
-            raise WrongDirective(
-                "a role must be an atom", "write `role(nurse)` or `role([nurse, cook])`", each.span
-            )
+            help = "write `role(nurse)` or `role([nurse, cook])`"
+            raise WrongDirective("a role must be an atom", help, each.span)
         yield each.functor
 
 
@@ -104,9 +93,8 @@ def _parameter(term: nodes.Term) -> Parameter:
             return _kind(Parameter(name), kind)
         case nodes.Literal(name, (kind, nodes.String(doc)), False):
             return replace(_kind(Parameter(name), kind), doc=doc)
-    raise WrongDirective(
-        "an argument of an offer is its name with its kind", "write `parcel(string)`", term.span
-    )
+    message = "an argument of an offer is its name with its kind"
+    raise WrongDirective(message, "write `parcel(string)`", term.span)
 
 
 def _kind(parameter: Parameter, kind: nodes.Term) -> Parameter:
@@ -126,8 +114,6 @@ def _kind(parameter: Parameter, kind: nodes.Term) -> Parameter:
                 return replace(parameter, kind="atom", choices=tuple(atoms))
             if len(strings) == len(items):
                 return replace(parameter, kind="string", choices=tuple(strings))
-        case _:
-            pass
     help = (
         f"write one of {', '.join(KINDS)}, `number(0, 100)`, a list of atoms, or `out(number)` for a result"
     )
