@@ -135,27 +135,10 @@ def term_of(value: Data, parameter: Parameter) -> Term:
     Raises:
         ValueError: it is of another kind, or too large.
     """
-    kind = parameter.kind
-    if kind in ("string", "atom") and isinstance(value, str):
-        if len(value) > MOST:
-            raise ValueError(f"has more than {MOST} characters")
-        term: Term = String(value) if kind == "string" else to_term(Atom(value), UNKEPT)
-    elif kind in ("number", "integer") and isinstance(value, int | float) and not isinstance(value, bool):
-        if not _is_finite(value):
-            raise ValueError("must be finite")
-        term = to_term(value, UNKEPT)
-    elif kind == "boolean" and isinstance(value, bool):
-        term = TRUE if value else FALSE
-    elif kind == "any" or (kind == "list" and isinstance(value, list)):
-        term = to_term(_plain(value, [0]), UNKEPT)
-    else:
-        raise ValueError(f"must be {_article(parameter)}")
+    found = _plain(value, [0])
+    term = to_term(Atom(found) if parameter.kind == "atom" and type(found) is str else found, UNKEPT)
     check_term(term, parameter)
     return term
-
-
-def _article(parameter: Parameter) -> str:
-    return f"one of {', '.join(parameter.choices)}" if parameter.choices else f"of the kind {parameter.kind}"
 
 
 def check_term(term: Term, parameter: Parameter) -> None:
@@ -164,25 +147,22 @@ def check_term(term: Term, parameter: Parameter) -> None:
     Raises:
         ValueError: it is not. The text says what it must be.
     """
-    kind = term.__class__
-    if parameter.kind in ("number", "integer"):
-        if kind not in NUMBERS:
-            raise ValueError("must be a number")
-        value = double(term)
-        if parameter.kind == "integer" and not value.is_integer():
-            raise ValueError("must be an integer")
-        if (parameter.least is not None and value < parameter.least) or (
-            parameter.most is not None and value > parameter.most
-        ):
-            raise ValueError(f"must be from {parameter.least:g} to {parameter.most:g}")
+    kind, is_number = term.__class__, term.__class__ in NUMBERS
     fits = {
         "string": kind is String,
         "atom": kind is Functor,
         "boolean": term is TRUE or term is FALSE,
         "list": is_list(term),
+        "number": is_number,
+        "integer": is_number and double(term).is_integer(),
     }.get(parameter.kind, True)
-    if not fits or (parameter.choices and to_value(term) not in parameter.choices):
-        raise ValueError(f"must be {_article(parameter)}")
+    if parameter.choices and (not fits or to_value(term) not in parameter.choices):
+        raise ValueError(f"must be one of {', '.join(parameter.choices)}")
+    if not fits:
+        raise ValueError(f"must be of the kind {parameter.kind}")
+    least, most = parameter.least, parameter.most
+    if least is not None and most is not None and not least <= double(term) <= most:
+        raise ValueError(f"must be from {least:g} to {most:g}")
 
 
 def _plain(value: Data, count: list[int], depth: int = 0) -> Any:

@@ -8,7 +8,7 @@ from serving_lab import Lab, run
 
 from jacaros.serving.callers import RequestError
 from jacaros.serving.http.openapi import document
-from jacaros.serving.mcp.tools import named_tools, resources_of
+from jacaros.serving.mcp.tools import named_tools, offers_of, resources_of
 from jacaros.serving.ros.opening import open_door
 
 PROGRAM = """
@@ -97,7 +97,7 @@ def test_questions_beliefs_and_tells_of_one_name() -> None:
 
 def test_tools_and_resources_of_a_language_model_have_names_of_their_own() -> None:
     async def test(lab: Lab) -> None:
-        offered = [("bob", each) for each in lab.session().offers("bob")]
+        offered = offers_of(lab.session())
         tools = named_tools(offered)
         assert {name: tool.offer.key for name, tool in tools.items() if "deliver" in name} == {
             "bob_deliver_1": "deliver/1",

@@ -7,11 +7,10 @@ from contextlib import ExitStack, suppress
 from math import inf
 from typing import Any
 
-from jacaros.agents.language.offers import Offer
 from jacaros.serving.callers import Caller, RequestError
 from jacaros.serving.crossing import Crossing, Outbox
 from jacaros.serving.goals import RequestedGoal
-from jacaros.serving.mcp.tools import OfferedTool, named_tools
+from jacaros.serving.mcp.tools import AgentOffer, named_tools, offers_of
 from jacaros.serving.remote import RemoteCaller
 from jacaros.serving.service import Event, Service, Session
 
@@ -31,32 +30,26 @@ class Client(RemoteCaller):
     def __init__(self, caller: Caller, crossing: Crossing, service: Service) -> None:
         super().__init__(caller, crossing, service)
         self.left = False
-        self._tools: dict[str, OfferedTool] = {}
+        self._tools: dict[str, AgentOffer] = {}
 
     async def leave(self) -> None:
         """End its session."""
         self.left = True
         await super().leave()
 
-    async def offered(self) -> list[tuple[str, Offer]]:
-        """Return agents, and what they offer to the caller."""
-        return await self.do(
-            lambda session: [(agent, each) for agent in session.agents() for each in session.offers(agent)]
-        )
-
-    async def tools(self) -> Mapping[str, OfferedTool]:
+    async def tools(self) -> Mapping[str, AgentOffer]:
         """Return the tools of the agents by name."""
-        self._tools = named_tools(await self.offered())
+        self._tools = named_tools(await self.do(offers_of))
         return self._tools
 
-    async def tool(self, name: str) -> OfferedTool | None:
+    async def tool(self, name: str) -> AgentOffer | None:
         """Return the tool with a name, or None."""
         if name not in self._tools:
             await self.tools()
         return self._tools.get(name)
 
     async def pursue(
-        self, tool: OfferedTool, arguments: Mapping[str, Any], report: Report | None, patience: float | None
+        self, tool: AgentOffer, arguments: Mapping[str, Any], report: Report | None, patience: float | None
     ) -> dict[str, Any]:
         """Give an agent a goal, and wait for its end. Return its data.
 
@@ -141,7 +134,7 @@ class Pursuit:
         detached: whether the goal continues when the request ends.
     """
 
-    def __init__(self, client: Client, tool: OfferedTool, arguments: Mapping[str, Any]) -> None:
+    def __init__(self, client: Client, tool: AgentOffer, arguments: Mapping[str, Any]) -> None:
         self._client, self._tool, self._arguments = client, tool, arguments
         self.detached = False
         self._goal: RequestedGoal | None = None

@@ -24,7 +24,7 @@ from jacaros.serving.callers import RequestError
 from jacaros.serving.crossing import Outbox
 from jacaros.serving.goals import ACHIEVED, OVER
 from jacaros.serving.mcp.clients import Client
-from jacaros.serving.mcp.tools import OWN, OfferedTool, belief_at, own_tools, resources_of, tool_of
+from jacaros.serving.mcp.tools import OWN, AgentOffer, belief_at, offers_of, own_tools, resources_of, tool_of
 from jacaros.serving.service import Session
 from jacaros.version import VERSION
 
@@ -101,7 +101,7 @@ class McpServer:
         except RequestError as error:
             return _wrong(error.message)
 
-    async def _use(self, ctx: Context, client: Client, tool: OfferedTool, given: Mapping[str, Any]) -> Result:
+    async def _use(self, ctx: Context, client: Client, tool: AgentOffer, given: Mapping[str, Any]) -> Result:
         agent, offer = tool.agent, tool.offer
         if offer.what == "question":
             answers = await client.do(lambda session: session.query(agent, offer.key, given))
@@ -145,7 +145,7 @@ class McpServer:
 
     async def _list_resources(self, ctx: Context, _: object) -> types.ListResourcesResult:
         with _answering():
-            offered = await self._client_of(ctx).offered()
+            offered = await self._client_of(ctx).do(offers_of)
         return types.ListResourcesResult(resources=resources_of(offered))
 
     async def _read_resource(

@@ -11,6 +11,7 @@ import mcp_types as types
 from jacaros.agents.language.offers import Offer, Parameter
 from jacaros.look.why.why import FORMS
 from jacaros.serving.arguments import called, results_schema, schema_of
+from jacaros.serving.service import Session
 
 LONGEST_NAME = 64
 """Maximum length of a tool's name that all clients take."""
@@ -23,16 +24,26 @@ _FORMS = "; ".join(f"`{form}`: {answer}" for form, answer in FORMS.items())
 
 
 @dataclass(frozen=True, slots=True)
-class OfferedTool:
-    """An offer of an agent that is a tool.
+class AgentOffer:
+    """An offer of an agent.
 
     Attributes:
         agent: name of the agent.
-        offer: the goal, the question, or the belief that callers may tell.
+        name: by which name callers call it.
+        offer: the goal, the question, the belief, or the belief that callers may tell.
     """
 
     agent: str
+    name: str
     offer: Offer
+
+
+def offers_of(session: Session) -> list[AgentOffer]:
+    """Return what agents offer to a caller."""
+    offered = {agent: session.offers(agent) for agent in session.agents()}
+    return [
+        AgentOffer(agent, called(each, offers), each) for agent, offers in offered.items() for each in offers
+    ]
 
 
 def _asked(name: str, doc: str) -> tuple[Parameter, ...]:
@@ -66,26 +77,20 @@ OWN: Final = {each.name: each for each in _OWN}
 """Tools that all runs have, by name."""
 
 
-def named_tools(offered: Sequence[tuple[str, Offer]]) -> dict[str, OfferedTool]:
+def named_tools(offered: Iterable[AgentOffer]) -> dict[str, AgentOffer]:
     """Return the offers of agents that are tools, by the names of the tools."""
-    tools: dict[str, OfferedTool] = {}
-    for agent, offer in offered:
-        if offer.what not in ("goal", "question", "tell"):
+    tools: dict[str, AgentOffer] = {}
+    for each in offered:
+        if each.offer.what not in ("goal", "question", "tell"):
             continue
-        verb = "tell_" * (offer.what == "tell")
-        wanted = re.sub(r"[^A-Za-z0-9_-]", "_", f"{agent}_{verb}{_called(agent, offer, offered)}")[
-            :LONGEST_NAME
-        ]
+        verb = "tell_" * (each.offer.what == "tell")
+        wanted = re.sub(r"[^A-Za-z0-9_-]", "_", f"{each.agent}_{verb}{each.name}")[:LONGEST_NAME]
         name, number = wanted, 1
         while name in tools or name in OWN:
             number += 1
             name = f"{wanted[: LONGEST_NAME - 4]}_{number}"
-        tools[name] = OfferedTool(agent, offer)
+        tools[name] = each
     return tools
-
-
-def _called(agent: str, offer: Offer, offered: Iterable[tuple[str, Offer]]) -> str:
-    return called(offer, [each for name, each in offered if name == agent])
 
 
 def own_tools() -> list[types.Tool]:
@@ -93,7 +98,7 @@ def own_tools() -> list[types.Tool]:
     return [_tool(each.name, each, each.doc) for each in _OWN]
 
 
-def tool_of(name: str, tool: OfferedTool) -> types.Tool:
+def tool_of(name: str, tool: AgentOffer) -> types.Tool:
     """Return the description of a tool for clients."""
     offer = tool.offer
     schema: dict[str, Any] | None = results_schema(offer)
@@ -115,7 +120,7 @@ def _tool(name: str, offer: Offer, description: str, **more: Any) -> types.Tool:
     return types.Tool(name=name, description=description, input_schema=schema, annotations=hints, **more)
 
 
-def _description(tool: OfferedTool) -> str:
+def _description(tool: AgentOffer) -> str:
     offer = tool.offer
     told = offer.doc or f"{offer.what} {offer}"
     if offer.what == "tell":
@@ -124,11 +129,6 @@ def _description(tool: OfferedTool) -> str:
         return f"Ask the agent {tool.agent}. {told}"
     many = "" if offer.at_most is None else f" At most {offer.at_most} at once; {_BUSY[offer.when_busy]}."
     return f"Give the agent {tool.agent} a goal. {told}{many}"
-
-
-def uri_of(agent: str, name: str) -> str:
-    """Return the address of an offered belief."""
-    return f"jacaros://{quote(agent, '')}/beliefs/{quote(name, '')}"
 
 
 def belief_at(uri: str) -> tuple[str, str] | None:
@@ -143,17 +143,16 @@ def belief_at(uri: str) -> tuple[str, str] | None:
     return unquote(parts.netloc), unquote(name)
 
 
-def resources_of(offered: Sequence[tuple[str, Offer]]) -> list[types.Resource]:
+def resources_of(offered: Iterable[AgentOffer]) -> list[types.Resource]:
     """Return the offered beliefs as resources."""
     return [
         types.Resource(
-            name=f"{agent}_{name}",
-            title=f"{agent}: {offer}",
-            uri=uri_of(agent, name),
-            description=offer.doc or f"Beliefs {offer} of the agent {agent}.",
+            name=f"{each.agent}_{each.name}",
+            title=f"{each.agent}: {each.offer}",
+            uri=f"jacaros://{quote(each.agent, '')}/beliefs/{quote(each.name, '')}",
+            description=each.offer.doc or f"Beliefs {each.offer} of the agent {each.agent}.",
             mime_type="application/json",
         )
-        for agent, offer in offered
-        if offer.what == "belief"
-        for name in (_called(agent, offer, offered),)
+        for each in offered
+        if each.offer.what == "belief"
     ]
