@@ -1,9 +1,15 @@
-"""Start the world and the agents of the patrol on ROS 2: ``ros2 launch examples/04_patrol/patrol_launch.py``."""
+"""Start the world and the agents of the patrol on ROS 2: ``ros2 launch examples/04_patrol/patrol_launch.py``.
+
+With ``lifecycle:=true``, the agents wait until their node is configured and activated.
+"""
 
 from pathlib import Path
 
 from launch import LaunchDescription
-from launch_ros.actions import Node
+from launch.actions import DeclareLaunchArgument
+from launch.conditions import IfCondition, UnlessCondition
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import LifecycleNode, Node
 
 FOLDER = Path(__file__).parent
 
@@ -16,12 +22,25 @@ def generate_launch_description() -> LaunchDescription:
         name="world",
         arguments=["sim", str(FOLDER / "patrol.yaml"), "--publish-clock"],
     )
+    run = ["run", str(FOLDER / "patrol.jcm")]
     agents = Node(
         package="jacaros",
         executable="jacaros",
         name="patrol",
         output="screen",
-        arguments=["run", str(FOLDER / "patrol.jcm")],
+        arguments=run,
         parameters=[{"use_sim_time": True}],
+        condition=UnlessCondition(LaunchConfiguration("lifecycle")),
     )
-    return LaunchDescription([world, agents])
+    managed = LifecycleNode(
+        package="jacaros",
+        executable="jacaros",
+        name="patrol",
+        namespace="",
+        output="screen",
+        arguments=[*run, "--lifecycle"],
+        parameters=[{"use_sim_time": True}],
+        condition=IfCondition(LaunchConfiguration("lifecycle")),
+    )
+    lifecycle = DeclareLaunchArgument("lifecycle", default_value="false")
+    return LaunchDescription([lifecycle, world, agents, managed])

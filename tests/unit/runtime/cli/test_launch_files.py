@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from runpy import run_path
 from types import ModuleType
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 from click import Context
@@ -20,6 +20,20 @@ class Description(list[Any]):
     """The result of a launch file."""
 
 
+class Argument(NamedTuple):
+    """An argument of the launch file, or its value."""
+
+    name: str
+    default_value: str = ""
+
+
+class Condition(NamedTuple):
+    """Whether a node is started."""
+
+    argument: Argument
+    wanted: bool
+
+
 class Node:
     """A node to be started."""
 
@@ -28,6 +42,7 @@ class Node:
         self.name = name
         self.arguments: list[str] = rest["arguments"]
         self.parameters: list[dict[str, object]] = rest.get("parameters", [])
+        self.condition: Condition | None = rest.get("condition")
 
     def command_line(self, folder: Path) -> list[str]:
         """Return the arguments of the process: names after ``--ros-args``, and a parameter file."""
@@ -41,33 +56,64 @@ class Node:
 
 
 @pytest.fixture
-def nodes(monkeypatch: pytest.MonkeyPatch) -> Sequence[Node]:
+def description(monkeypatch: pytest.MonkeyPatch) -> Description:
     monkeypatch.delenv("JACAROS_ROS", raising=False)
-    for name, members in {
+    modules: dict[str, dict[str, Any]] = {
         "launch": {"LaunchDescription": Description},
+        "launch.actions": {"DeclareLaunchArgument": Argument},
+        "launch.conditions": {
+            "IfCondition": lambda argument: Condition(argument, True),
+            "UnlessCondition": lambda argument: Condition(argument, False),
+        },
+        "launch.substitutions": {"LaunchConfiguration": Argument},
         "launch_ros": {},
-        "launch_ros.actions": {"Node": Node},
-    }.items():
+        "launch_ros.actions": {"Node": Node, "LifecycleNode": Node},
+    }
+    for name, members in modules.items():
         module = ModuleType(name)
         vars(module).update(members)
         monkeypatch.setitem(sys.modules, name, module)
-    found: Sequence[Node] = run_path(str(FILE))["generate_launch_description"]()
+    found: Description = run_path(str(FILE))["generate_launch_description"]()
     return found
 
 
-def test_the_launch_file_starts_a_world_and_the_agents(nodes: Sequence[Node], tmp_path: Path) -> None:
+def started(description: Description, lifecycle: str = "") -> list[Node]:
+    """Return the nodes that are started, with an argument of ``ros2 launch`` or its default."""
+    (argument,) = (each for each in description if isinstance(each, Argument))
+    is_managed = (lifecycle or argument.default_value) == "true"
+    nodes = [each for each in description if isinstance(each, Node)]
+    conditions = [each.condition for each in nodes if each.condition is not None]
+    assert {each.argument.name for each in conditions} == {argument.name} == {"lifecycle"}
+    return [each for each in nodes if each.condition is None or each.condition.wanted == is_managed]
+
+
+def read(nodes: Sequence[Node], folder: Path) -> dict[str, dict[str, Any]]:
+    """Return the options of each node by its name."""
     told: list[str] = []
-    read = {}
+    found = {}
     for node in nodes:
-        line = as_options(node.command_line(tmp_path), told.append)
+        line = as_options(node.command_line(folder), told.append)
         with Context(jacaros) as context:
             _, command, rest = jacaros.resolve_command(context, line)
             assert command is not None
-            read[node.name] = command.make_context(str(command.name), rest).params
+            found[node.name] = command.make_context(str(command.name), rest).params
     assert told == []
-    world, agents = read["world"], read["patrol"]
+    return found
+
+
+def test_the_launch_file_starts_a_world_and_the_agents(description: Description, tmp_path: Path) -> None:
+    options = read(started(description), tmp_path)
+    world, agents = options["world"], options["patrol"]
     assert (world["ros"], world["node_name"], world["publish_clock"]) == ("ros2", "world", True)
-    assert (agents["ros"], agents["node_name"]) == ("ros2", "patrol")
+    assert (agents["ros"], agents["node_name"], agents["lifecycle"]) == ("ros2", "patrol", False)
     assert read_parameters((), agents["params_file"], "patrol") == {"use_sim_time": True}
     assert Path(world["world"]).is_file()
     assert agents["file"].is_file()
+
+
+def test_the_launch_file_starts_managed_agents_when_asked(description: Description, tmp_path: Path) -> None:
+    world, agents = started(description, "true")
+    assert world.name == "world"
+    options = read([agents], tmp_path)["patrol"]
+    assert (options["lifecycle"], options["node_name"]) == (True, "patrol")
+    assert options["file"] == read([started(description)[1]], tmp_path)["patrol"]["file"]
