@@ -43,7 +43,7 @@ _RULES: dict[str, _Rule] = {
     "believed": _Rule(("robot",)),
     "graph": _Rule(()),
     "debug": _Rule(()),
-    "fault": _Rule(("fault",), lambda data: data.get("state") != "begins"),
+    "fault": _Rule(("fault",), lambda data: data.get("state") not in ("begins", "acts")),
     "door_opened": _Rule(("door",)),
     "door_closed": _Rule(("door",), replaces="door_opened"),
     "person_comes": _Rule(("person",)),

@@ -46,8 +46,8 @@ def states(world: World) -> list[tuple[float, str]]:
 def test_a_fault_starts_and_ends_on_schedule() -> None:
     world = world_with("{kind: wheel_slip, share: 0.5, at: 1, for: 2}")
     drive(world, 4.0)
-    assert states(world) == [(1.0, "begins"), (3.0, "ends")]
-    [first, _] = world.ground_truth.events_of("fault")
+    assert states(world) == [(1.0, "begins"), (1.0, "acts"), (3.0, "ends")]
+    [first, _, _] = world.ground_truth.events_of("fault")
     assert (first.robot, first.data["fault"], first.data["kind"]) == ("turtlebot", "f", "wheel_slip")
 
 

@@ -35,7 +35,7 @@ export function inWords(event, data, severalRobots) {
 
 /** The sort of mark for an event, undefined for none. */
 export function sortOf(event, data) {
-  if (FAILURES.has(event)) return event === "fault" && data.state === "ends" ? undefined : "failure";
+  if (FAILURES.has(event)) return event === "fault" && /ends|acts/.test(data.state) ? undefined : "failure";
   // Behaviours of trees fail without a reason as a matter of course.
   if (event === "goal") return data.state === "failed" && data.why ? "failure" : undefined;
   if (event === "operation") return undefined;

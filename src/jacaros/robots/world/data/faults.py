@@ -8,14 +8,14 @@ from typing import Annotated, Final, NamedTuple
 
 from jacaros.robots.plane.pose import ORIGIN, Pose
 from jacaros.robots.world.data.world import PersonDescription
-from jacaros.runtime.files.entries import FieldSpec, choice, number, whole
+from jacaros.runtime.files.entries import FieldSpec, choice, number, section, whole
 
 
 class FaultKind(NamedTuple):
     """A kind of faults.
 
     Attributes:
-        keys: its keys in a fault file, beside ``at``, ``for`` and ``robot``.
+        keys: its keys in a fault file, beside ``at``, ``after``, ``for`` and ``robot``.
         robot: whether it concerns a robot.
         lasts: whether it has a duration.
     """
@@ -38,7 +38,7 @@ MESSAGES: Final[Mapping[str, FaultKind]] = {
 KINDS: Final[Mapping[str, FaultKind]] = {
     "wheel_slip": FaultKind(("share",), True),
     "blocked_wheel": FaultKind(("wheel",), True),
-    "kidnapped_robot": FaultKind(("to",), True, lasts=False),
+    "kidnapped_robot": FaultKind(("to", "by"), True, lasts=False),
     "lost_localisation": FaultKind(("to",), True, lasts=False),
     "battery_drop": FaultKind(("to",), True, lasts=False),
     "dead_dock": FaultKind(("dock",)),
@@ -59,13 +59,42 @@ def _seconds(help: str, key: str = "") -> FieldSpec:
 
 
 @dataclass(frozen=True, slots=True)
+class Progress:
+    """Progress of a robot after which a fault begins: one of the three entries.
+
+    Attributes:
+        metres: distance truly driven since the start of the world.
+        battery: level in percent, at or below.
+        tasks: number of announced tasks.
+        robot: name of the robot that makes it, "" for the first.
+    """
+
+    metres: Annotated[float | None, number(0.0, math.inf, "m", "driven")] = None
+    battery: Annotated[float | None, number(0.0, 100.0, "%", "level, at or below")] = None
+    tasks: Annotated[int | None, whole(1, "announced tasks")] = None
+    robot: str = ""
+
+    def __bool__(self) -> bool:
+        return (self.metres, self.battery, self.tasks) != (None, None, None)
+
+    def reached(self, metres: float, battery: float, tasks: int) -> bool:
+        """Return whether a robot has got that far."""
+        if self.metres is not None:
+            return metres >= self.metres
+        if self.battery is not None:
+            return battery <= self.battery
+        return self.tasks is not None and tasks >= self.tasks
+
+
+@dataclass(frozen=True, slots=True)
 class Fault:
     """One fault.
 
     Attributes:
         name: name in the ground truth and in its service.
         kind: one of `KINDS`.
-        at: start in seconds of the world; None: only on request.
+        at: start in seconds of the world; None without it.
+        after: progress that starts it. Without both, it starts only on request.
         lasts: duration in seconds; None: until `Faults.end`.
         robot: name of the affected robot, "" for none.
         topic, action: absolute names.
@@ -75,6 +104,7 @@ class Fault:
         gap: metres between a robot and the person in its way.
         wheel: ``left``, ``right`` or ``both``.
         pose: new pose of a kidnapped robot, pose that a lost robot believes in, or pose of a wrong dock.
+        by: metres by which a kidnapped robot is carried, in a drawn direction; None: to ``pose``.
         level: remaining charge of the battery, in percent.
         person: person who appears.
         seconds, jitter: delay of messages, and maximum of its random part, in seconds.
@@ -84,6 +114,7 @@ class Fault:
     name: str
     kind: str
     at: Annotated[float | None, _seconds("beginning; without it, only on request")] = None
+    after: Annotated[Progress, section("progress of the robot that begins it, instead of `at`")] = Progress()
     lasts: Annotated[float | None, _seconds("duration; without it, until you end it", "for")] = None
     robot: str = ""
     topic: Annotated[str, FieldSpec("text", "absolute, or below the robot's namespace")] = ""
@@ -95,6 +126,9 @@ class Fault:
     gap: Annotated[float, number(0.05, 5.0, "m", "between the robot and the person in its way")] = 0.5
     wheel: Annotated[str, choice("both", "left", "right", help="blocked wheel")] = "both"
     pose: Pose = ORIGIN
+    by: Annotated[
+        float | None, number(0.0, 100.0, "m", "distance of a kidnapped robot from where it was")
+    ] = None
     level: float = 0.0
     person: PersonDescription | None = None
     seconds: Annotated[float, _seconds("delay")] = 0.5

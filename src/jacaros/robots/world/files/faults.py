@@ -1,12 +1,13 @@
 """Fault files: YAML text to `Fault` objects, which declare their entries, checked against their world."""
 
 import re
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from jacaros.robots.plane.pose import Pose
-from jacaros.robots.world.data.faults import KINDS, Fault, FaultKind
+from jacaros.robots.world.data.faults import KINDS, Fault, FaultKind, Progress
 from jacaros.robots.world.data.robot import RobotDescription, absolute
 from jacaros.robots.world.data.world import PersonDescription, WorldDescription, WorldError
 from jacaros.robots.world.files.floor import place_problem, read_path
@@ -78,20 +79,26 @@ def _fault(key: YamlNode, node: YamlNode, world: WorldDescription | None) -> Fau
     word = node.value.get("kind") if isinstance(node.value, dict) else None
     every = tuple(dict.fromkeys(key for kind in KINDS.values() for key in kind.keys))
     kind = KINDS.get(word) if isinstance(word, str) else None
-    entries = node.mapping("kind", "at", "for", "robot", *(kind.keys if kind else every), required=("kind",))
+    entries = node.mapping(
+        "kind", "at", "after", "for", "robot", *(kind.keys if kind else every), required=("kind",)
+    )
     if kind is None:
         if "kind" in entries:
             entries["kind"].choice(*KINDS)
         return Fault(name, "dead")
     for key_name in kind.keys:
-        if key_name in _REQUIRED and key_name not in entries:
-            node.wrong(f"{node.what} lacks the key '{key_name}'", _REQUIRED[key_name])
+        if key_name in _REQUIRED and key_name not in entries and "by" not in entries:
+            other = ", or a distance, 'by: 1.5'" if "by" in kind.keys else ""
+            node.wrong(f"{node.what} lacks the key '{key_name}'", _REQUIRED[key_name] + other)
     if not kind.lasts and "for" in entries:
         entries["for"].wrong(f"'{word}' has no duration", "remove 'for'")
+    _check_one_of(entries, "at", "after")
+    _check_one_of(entries, "to", "by")
+    whose = _robot(node, entries, str(word), kind, world)
     usual = Fault(
         name,
         str(word),
-        robot=_robot(node, entries.get("robot"), str(word), kind, world),
+        robot=whose if kind.robot else "",
         share=_SHARES.get(str(word), 1.0),
     )
     robot = next((each for each in (world.robots if world else ()) if each.name == usual.robot), None)
@@ -107,6 +114,8 @@ def _fault(key: YamlNode, node: YamlNode, world: WorldDescription | None) -> Fau
             dock=_one_of("dock", world and world.docks),
         ),
     )
+    if "after" in entries:
+        fault = replace(fault, after=_one_progress(entries["after"], replace(fault.after, robot=whose)))
     if word == "missed_grasp" and robot and not robot.gripper_reach:
         node.wrong(
             f"the robot '{robot.name}' has no gripper", "add 'gripper: true' to it, or remove the fault"
@@ -122,19 +131,39 @@ def _fault(key: YamlNode, node: YamlNode, world: WorldDescription | None) -> Fau
     return fault
 
 
+def _check_one_of(entries: Mapping[str, YamlNode], one: str, other: str) -> None:
+    if one in entries and other in entries:
+        entries[other].wrong(f"'{one}' and '{other}' exclude each other", f"remove '{one}' or '{other}'")
+
+
+def _one_progress(node: YamlNode, progress: Progress) -> Progress:
+    """Check that exactly one kind of progress is given."""
+    count = len(node.value) if isinstance(node.value, dict) else 1
+    if count != 1:
+        node.wrong(
+            f"'after' has {count} keys, but must have one", "write one of 'metres', 'battery' and 'tasks'"
+        )
+    return progress
+
+
 def _robot(
-    node: YamlNode, given: YamlNode | None, word: str, kind: FaultKind, world: WorldDescription | None
+    node: YamlNode,
+    entries: Mapping[str, YamlNode],
+    word: str,
+    kind: FaultKind,
+    world: WorldDescription | None,
 ) -> str:
-    """Read the affected robot; by default, the only one."""
-    if not kind.robot:
+    """Read the affected robot, or the one whose progress counts; by default, the only one."""
+    given, counts = entries.get("robot"), "after" in entries
+    if not kind.robot and not counts:
         if given is not None:
-            given.wrong(f"'{word}' does not concern a robot", "remove 'robot'")
+            given.wrong(f"'{word}' does not concern a robot", "remove 'robot', or add 'after'")
         return ""
     if world is None:
         return ""
     names = [robot.name for robot in world.robots]
     if given is None:
-        if len(names) > 1 and not {"topic", "action"} & set(kind.keys):
+        if len(names) > 1 and (counts or not {"topic", "action"} & set(kind.keys)):
             node.wrong(f"{node.what} lacks the key 'robot'", f"add a robot of the world: 'robot: {names[0]}'")
         return names[0] if len(names) == 1 else ""
     name = given.text()

@@ -38,6 +38,7 @@ def disturbed(by: TopicFault, message: Any) -> Sequence[Late]:
         case "frozen":
             if by.first is None:
                 by.first = copy.deepcopy(message)
+                return ((0.0, message),)
             repeated = copy.deepcopy(by.first)
             if hasattr(message, "header"):
                 repeated.header.stamp = message.header.stamp
@@ -146,12 +147,19 @@ class FaultyGraph:
     def _pass_on(self, topic: str, send: Callable[[Any], None], message: Any) -> None:
         passing: Sequence[Late] = ((0.0, message),)
         for fault in self._faults.disturbances(topic):
+            before = passing
             passing = [(late + later, out) for late, each in passing for later, out in disturbed(fault, each)]
+            if _ids(passing) != _ids(before):
+                self._faults.acts(fault.fault.name)
         for late, each in passing:
             if late > 0.0:
                 self._clock.call_later(late, partial(send, each))
             else:
                 send(each)
+
+
+def _ids(messages: Sequence[Late]) -> list[tuple[float, int]]:
+    return [(late, id(message)) for late, message in messages]
 
 
 def _check_name(fault: str, what: str, name: str, known: set[str]) -> None:

@@ -1,17 +1,35 @@
 """The faults of a running world: when they begin and end, and what they affect."""
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
-from jacaros.robots.world.data.faults import MESSAGES, Fault
+from jacaros.robots.world.data.faults import MESSAGES, Fault, Progress
 from jacaros.runtime.errors import UsageError
 
 Undo = Callable[[], object]
 AbortGoal = Callable[[str], object]
 """Aborts a goal because of a fault."""
+Felt = Callable[[], bool]
+"""Returns whether a fault affects a robot now."""
+
+
+class Effect(NamedTuple):
+    """What a fault that starts does.
+
+    Attributes:
+        undo: ends it; None for faults without duration.
+        felt: whether it affects a robot from the start, or a function that is called at each step until it does. After
+            False, `Faults.acts` reports an effect.
+        data: further data of the event.
+    """
+
+    undo: Undo | None = None
+    felt: bool | Felt = False
+    data: Mapping[str, Any] = MappingProxyType({})
 
 
 @dataclass(slots=True)
@@ -33,19 +51,20 @@ class Faults:
     """The faults of a world, by name.
 
     Each start and end is an event ``fault`` of the ground truth, with ``fault`` (its name), ``kind`` and ``state``:
-    ``begins``, ``ends``, or ``refused`` with ``why``.
+    ``begins``, ``ends``, or ``refused`` with ``why``. Between them, once, ``acts``: the first effect on a robot.
 
     Args:
         faults: its faults.
         seed: seed of the world.
         now: returns the time of the world, in seconds.
-        happen: lets a fault happen in the world, and returns what ends it; None for faults without duration. It raises
-            `UsageError` if the fault cannot happen now.
+        happen: lets a fault happen in the world. It raises `UsageError` if the fault cannot happen now.
+        reached: returns whether a robot has made a progress.
         note: takes the events, with the affected robot ("" for none).
 
     Attributes:
         by_name: faults by name.
-        next: time of the next start or end, in seconds of the world; infinite without one.
+        next: time of the next start or end, in seconds of the world; infinite without one, and in the past while each
+            step can bring a start or an effect.
         topics, actions: all topics and actions with faults, active or not.
     """
 
@@ -54,15 +73,19 @@ class Faults:
         faults: Iterable[Fault],
         seed: int,
         now: Callable[[], float],
-        happen: Callable[[Fault], Undo | None],
+        happen: Callable[[Fault], Effect],
+        reached: Callable[[Progress], bool],
         note: Callable[[str, dict[str, Any]], object],
     ) -> None:
-        self._seed, self._now, self._happen, self._note = seed, now, happen, note
+        self._seed, self._now, self._happen, self._reached, self._note = seed, now, happen, reached, note
         self.by_name = {fault.name: fault for fault in faults}
         self.topics = frozenset(fault.topic for fault in self.by_name.values() if fault.topic)
         self.actions = frozenset(fault.action for fault in self.by_name.values() if fault.action)
         self._begins = {fault.name: fault.at for fault in self.by_name.values() if fault.at is not None}
+        self._waiting = {fault.name: fault.after for fault in self.by_name.values() if fault.after}
         self._ends: dict[str, float] = {}
+        self._unfelt: dict[str, Felt | None] = {}
+        """Faults that have started and had no effect so far."""
         self._undo: dict[str, Undo] = {}
         self._disturbances: dict[str, dict[str, TopicFault]] = {}
         self._aborting: dict[str, tuple[str, Callable[[], bool]]] = {}
@@ -88,6 +111,7 @@ class Faults:
         for name, (meant, happens) in self._aborting.items():
             if meant == action and happens():
                 abort(name)
+                self.acts(name)
                 break
         self._goals[abort] = action
         return partial(self._goals.pop, abort, None)
@@ -99,10 +123,35 @@ class Faults:
         for name in [name for name, begin in self._begins.items() if begin <= time]:
             del self._begins[name]
             self.begin(name)
+        for name in [name for name, progress in self._waiting.items() if self._reached(progress)]:
+            del self._waiting[name]
+            self.begin(name)
+        for name in [name for name, felt in self._unfelt.items() if felt is not None and felt()]:
+            self.acts(name)
         self._look_ahead()
 
     def _look_ahead(self) -> None:
         self.next = min((*self._begins.values(), *self._ends.values()), default=math.inf)
+        if self._waiting or any(self._unfelt.values()):
+            self.next = -math.inf
+
+    def acts(self, name: str) -> None:
+        """Record that a fault has an effect, if it is the first one since its start."""
+        if name in self._unfelt:
+            del self._unfelt[name]
+            self._tell(self.by_name[name], "acts")
+
+    def chance(self, fault: Fault) -> Callable[[], bool]:
+        """Return a function that decides each time whether a fault happens, and reports its effect."""
+        happens = fault.chance(self._seed)
+
+        def decide() -> bool:
+            decided = happens()
+            if decided:
+                self.acts(fault.name)
+            return decided
+
+        return decide
 
     def begin(self, name: str) -> str | None:
         """Start a fault; an active fault continues.
@@ -117,16 +166,19 @@ class Faults:
         if name in self._undo:
             return None
         try:
-            undo = self._effect(fault)
+            effect = self._effect(fault)
         except UsageError as refused:
             self._tell(fault, "refused", why=str(refused))
             return str(refused)
-        if undo is not None:
-            self._undo[name] = undo
+        if effect.undo is not None:
+            self._undo[name] = effect.undo
             if fault.lasts is not None:
                 self._ends[name] = self._now() + fault.lasts
-                self._look_ahead()
-        self._tell(fault, "begins")
+        self._tell(fault, "begins", **effect.data)
+        self._unfelt[name] = None if isinstance(effect.felt, bool) else effect.felt
+        if effect.felt is True:
+            self.acts(name)
+        self._look_ahead()
         return None
 
     def end(self, name: str) -> None:
@@ -137,11 +189,12 @@ class Faults:
         """
         fault = self._named(name)
         self._ends.pop(name, None)
-        self._look_ahead()
         undo = self._undo.pop(name, None)
         if undo is not None:
             undo()
+            self._unfelt.pop(name, None)
             self._tell(fault, "ends")
+        self._look_ahead()
 
     def switch(self, name: str, on: bool) -> str | None:
         """Start or end a fault; return why it cannot start, or None.
@@ -159,11 +212,11 @@ class Faults:
             raise UsageError(f"unknown fault '{name}'; faults: {', '.join(self.by_name) or 'none'}")
         return self.by_name[name]
 
-    def _tell(self, fault: Fault, state: str, **more: str) -> None:
+    def _tell(self, fault: Fault, state: str, **more: Any) -> None:
         self._note(fault.robot, {"fault": fault.name, "kind": fault.kind, "state": state, **more})
 
-    def _effect(self, fault: Fault) -> Undo | None:
-        """Apply a fault, and return the function that ends it; None for faults without duration.
+    def _effect(self, fault: Fault) -> Effect:
+        """Apply a fault.
 
         Raises:
             UsageError: the fault cannot happen now.
@@ -171,12 +224,13 @@ class Faults:
         if fault.kind in MESSAGES:
             active = self._disturbances.setdefault(fault.topic, {})
             active[fault.name] = TopicFault(fault, fault.draw(self._seed, "messages"))
-            return partial(active.pop, fault.name)
+            return Effect(partial(active.pop, fault.name))
         if fault.kind == "aborted_action":
             happens = fault.chance(self._seed)
             self._aborting[fault.name] = fault.action, happens
-            for abort in [abort for abort, action in self._goals.items() if action == fault.action]:
-                if happens():
-                    abort(fault.name)
-            return partial(self._aborting.pop, fault.name)
+            running = [abort for abort, action in self._goals.items() if action == fault.action]
+            aborted = [abort for abort in running if happens()]
+            for abort in aborted:
+                abort(fault.name)
+            return Effect(partial(self._aborting.pop, fault.name), bool(aborted))
         return self._happen(fault)

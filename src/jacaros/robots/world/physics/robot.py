@@ -98,6 +98,7 @@ class Robot:
         x, y, yaw: true pose (metres, radians); speed, turn_rate: velocity of the base (m/s, rad/s).
         odometry: estimated pose. odometer: metres truly driven.
         battery: its battery. dock: dock that it stands in, or None.
+        tasks: number of tasks that it has announced.
         fallen: whether it has fallen down a cliff, after which it does not move.
         grip: returns the fraction of the wheel motion that moves the robot, from 0 to 1, for each step; None for full grip.
         blocked_wheel: ``left``, ``right`` or ``both``; "" for none.
@@ -120,6 +121,7 @@ class Robot:
         self.odometry = WheelOdometry(description.odometry, description.pose, f"{seed}/{self.name}/odometry")
         self.battery = Battery(description.battery)
         self.dock: Dock | None = None
+        self.tasks = 0
         self.fallen = False
         self._lifted = 0.0
         self.grip: Callable[[], float] | None = None
@@ -158,6 +160,11 @@ class Robot:
     def wheels_drop(self) -> bool:
         """Whether its wheels hang in the air: it has fallen, or was carried just now."""
         return self.fallen or self._lifted > 0.0
+
+    @property
+    def rolling(self) -> bool:
+        """Whether its motors turn its wheels, or would if none was blocked."""
+        return self.speed != 0.0 or self.turn_rate != 0.0
 
     @property
     def moving(self) -> bool:

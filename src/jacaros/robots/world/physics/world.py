@@ -6,21 +6,23 @@ and seed and the same commands at the same steps give the same run, to the last 
 
 import math
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from jacaros.robots.plane.contact import WallIndex, push_apart
-from jacaros.robots.plane.pose import Pose
+from jacaros.robots.plane.pose import Pose, distance
 from jacaros.robots.plane.shapes import Circle, Segment
-from jacaros.robots.world.data.faults import Fault
+from jacaros.robots.plane.trigonometry import PI, sine_cosine
+from jacaros.robots.world.data.faults import Fault, Progress
 from jacaros.robots.world.data.ground_truth import GroundTruth, RobotEvent
 from jacaros.robots.world.data.world import Dock, PersonDescription, WorldDescription
 from jacaros.robots.world.files.faults import read_faults
 from jacaros.robots.world.files.world import load_world, read_world
 from jacaros.robots.world.physics.dirt import Cleaning
-from jacaros.robots.world.physics.faults import Faults, Undo
+from jacaros.robots.world.physics.faults import Effect, Faults
 from jacaros.robots.world.physics.people import People, Person
 from jacaros.robots.world.physics.ranging import Laser
 from jacaros.robots.world.physics.robot import Robot
@@ -34,6 +36,12 @@ STEP = 0.02
 SAMPLES_PER_SECOND = 10
 DOOR_ROOM = 0.25
 """Metres that a robot must be away from a door for it to close."""
+NEAR = 1.0
+"""Metres from the centre of a robot at which a closed door or a person affects it."""
+CARRIED = 0.05
+"""Metres from which on a robot was carried somewhere else."""
+_DRAWS = 100
+"""Places that are tried for a kidnapped robot."""
 
 
 class World:
@@ -88,8 +96,9 @@ class World:
         self._next_sample = 0.0
         self._move_listeners: tuple[Callable[[], None], ...] = ()
         self._sample_robots(all_of_them=True)
+        seed = self.description.seed
         self.faults = Faults(
-            faults, self.description.seed, lambda: self.time, self._let_happen, self._note_fault
+            faults, seed, lambda: self.time, self._let_happen, self._reached, self._note_fault
         )
         self.faults.step(self.time)
 
@@ -160,6 +169,7 @@ class World:
         If the first word of *text* names a cleaning tool of the robot, start that tool.
         """
         robot = self.robot(name)
+        robot.tasks += 1
         self._note(robot, "task", {"task": text, "room": self.room_at(robot.x, robot.y)})
         self.cleaning.use(robot, text.partition(" ")[0])
 
@@ -409,8 +419,12 @@ class World:
     def _note_place(self, kind: str, x: float, y: float, data: dict[str, Any]) -> None:
         self._truth.record_event(RobotEvent(self.time, "", kind, x, y, 0.0, data))
 
-    def _let_happen(self, fault: Fault) -> Undo | None:
-        """Let a fault happen, and return what ends it; None for faults without duration.
+    def _reached(self, progress: Progress) -> bool:
+        robot = self.robot(progress.robot or None)
+        return progress.reached(robot.odometer, robot.battery.level, robot.tasks)
+
+    def _let_happen(self, fault: Fault) -> Effect:
+        """Let a fault happen.
 
         Raises:
             UsageError: it cannot happen now.
@@ -420,57 +434,91 @@ class World:
             case "wheel_slip":
                 robot, draw = self.robot(fault.robot), fault.draw(seed, "slip")
                 robot.grip = lambda: max(0.0, 1.0 - 2.0 * fault.share * draw())
-                return partial(setattr, robot, "grip", None)
+                return Effect(
+                    partial(setattr, robot, "grip", None), lambda: robot.rolling and fault.share > 0.0
+                )
             case "blocked_wheel":
                 robot = self.robot(fault.robot)
                 robot.blocked_wheel = fault.wheel
-                return partial(setattr, robot, "blocked_wheel", "")
+                return Effect(partial(setattr, robot, "blocked_wheel", ""), lambda: robot.rolling)
             case "kidnapped_robot":
-                self._carry(self.robot(fault.robot), fault.pose)
+                return self._kidnap(self.robot(fault.robot), fault)
             case "battery_drop":
                 battery = self.robot(fault.robot).battery
-                battery.level = min(battery.level, fault.level)
+                before, battery.level = battery.level, min(battery.level, fault.level)
+                return Effect(felt=before - battery.level >= 1.0)
             case "lost_localisation":
-                self.robot(fault.robot).misled = fault.pose
+                robot = self.robot(fault.robot)
+                robot.misled = fault.pose
+                return Effect(felt=lambda: robot.misled is None)
             case "dead_dock" | "dirty_contact" | "wrong_dock":
                 return self._spoil_dock(fault)
             case "closed_door":
-                if not self.doors[fault.door]:
-                    return lambda: None
-                why = self.move_door(fault.door, opened=False)
-                if why is not None:
-                    raise UsageError(why)
-                return partial(self.move_door, fault.door, opened=True)
+                return self._shut_door(fault.door)
             case "stuck_door":
-                self.stuck_doors[fault.door] = fault.chance(seed)
-                return partial(self.stuck_doors.pop, fault.door, None)
+                self.stuck_doors[fault.door] = self.faults.chance(fault)
+                return Effect(partial(self.stuck_doors.pop, fault.door, None))
             case "person" | "person_in_the_way":
-                self.add_person(self._person_of(fault))
-                return partial(self.remove_person, fault.name)
-            case "missed_grasp":
-                robot = self.robot(fault.robot)
-                robot.misses = fault.chance(seed)
-                return partial(setattr, robot, "misses", None)
-        return None
+                person = self.add_person(self._person_of(fault))
+                return Effect(
+                    partial(self.remove_person, fault.name),
+                    lambda: any(
+                        distance((each.x, each.y), (person.x, person.y)) <= NEAR for each in self._row
+                    ),
+                )
+        robot = self.robot(fault.robot)
+        robot.misses = self.faults.chance(fault)
+        return Effect(partial(setattr, robot, "misses", None))
 
-    def _spoil_dock(self, fault: Fault) -> Undo:
+    def _shut_door(self, name: str) -> Effect:
+        if not self.doors[name]:
+            return Effect(lambda: None)
+        why = self.move_door(name, opened=False)
+        if why is not None:
+            raise UsageError(why)
+        shut = next(door.segment for door in self.description.doors if door.name == name)
+        return Effect(
+            partial(self.move_door, name, opened=True),
+            lambda: any(shut.distance(robot.x, robot.y) <= NEAR for robot in self._row),
+        )
+
+    def _kidnap(self, robot: Robot, fault: Fault) -> Effect:
+        before = (robot.x, robot.y)
+        self._carry(robot, fault.pose if fault.by is None else self._place_near(robot, fault, fault.by))
+        metres = distance(before, (robot.x, robot.y))
+        return Effect(felt=metres >= CARRIED, data={"x": robot.x, "y": robot.y, "metres": metres})
+
+    def _place_near(self, robot: Robot, fault: Fault, metres: float) -> Pose:
+        """Draw a free place at that distance from a robot, and a heading."""
+        draw = fault.draw(self.description.seed, "by")
+        for _ in range(_DRAWS):
+            sine, cosine = sine_cosine(PI * (2.0 * draw() - 1.0))
+            pose = Pose(robot.x + metres * cosine, robot.y + metres * sine, PI * (2.0 * draw() - 1.0))
+            if any(cliff.contains(pose.x, pose.y) for cliff in self.description.cliffs):
+                continue
+            with suppress(UsageError):
+                self.check_room(pose.x, pose.y, robot.description.radius, robot.name)
+                return pose
+        raise UsageError(f"no free place {metres:g} m from {robot.name}")
+
+    def _spoil_dock(self, fault: Fault) -> Effect:
         """Take the current from a dock, always or now and then, or add a dock that has none."""
         dirty, wrong = fault.kind == "dirty_contact", Dock(fault.name, fault.pose)
         if fault.kind == "wrong_dock":
             if any(dock.name == fault.name for dock in self.docks):
                 raise UsageError(f"a dock has the name '{fault.name}'")
             self.docks = (wrong, *self.docks)
-        seed = self.description.seed
-        self.currents[fault.name] = (
-            fault.dock or fault.name,
-            lambda: dirty and fault.connects(seed, self.time),
-        )
+        seed, spoilt = self.description.seed, fault.dock or fault.name
+        self.currents[fault.name] = (spoilt, lambda: dirty and fault.connects(seed, self.time))
 
         def end() -> None:
             self.docks = tuple(dock for dock in self.docks if dock is not wrong)
             del self.currents[fault.name]
 
-        return end
+        def felt() -> bool:
+            return any(each.dock and each.dock.name == spoilt and not each.fed for each in self._row)
+
+        return Effect(end, felt)
 
     def _person_of(self, fault: Fault) -> PersonDescription:
         assert fault.person is not None
