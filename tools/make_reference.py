@@ -27,7 +27,7 @@ from jacaros.robots.kit.ros_artifact import RosArtifact
 from jacaros.robots.plane.shapes import Segment
 from jacaros.robots.registry import BUILT_IN
 from jacaros.robots.world.data import robot, world
-from jacaros.robots.world.data.faults import Fault
+from jacaros.robots.world.data.faults import Fault, Progress
 from jacaros.robots.world.data.ground_truth import FIELDS, RobotState
 from jacaros.runtime.cli.main import COMMANDS, jacaros
 from jacaros.runtime.files.entries import declared_entries
@@ -68,6 +68,7 @@ DESCRIBED: dict[str, Any] = {
     "Object": world.ObjectDescription("", 0.0, 0.0),
     "Person": world.PersonDescription("", ()),
     "Fault": Fault("", ""),
+    "Progress": Progress(),
 }
 """The parts of world files and fault files whose entries are declared, with their defaults."""
 SECTIONS = {"Options:": "Options", "Properties:": "Properties", "Signals:": "Signals"}

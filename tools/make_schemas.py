@@ -120,10 +120,15 @@ def faults() -> Schema:
         "to": {"anyOf": [NUMBER, place]},
         **declared(world.PersonDescription("", ()), path=POINTS)["properties"],
     }
-    keys = {**own, **declared(Fault("", ""))["properties"]}
+    one = {"minProperties": 1, "maxProperties": 1}
+    keys = {**own, **declared(Fault("", ""), after=one)["properties"]}
     kinds = [
         mapping(
-            {"kind": {"const": name}, "robot": TEXT, **{key: keys[key] for key in ("at", "for", *kind.keys)}},
+            {
+                "kind": {"const": name},
+                "robot": TEXT,
+                **{key: keys[key] for key in ("at", "after", "for", *kind.keys)},
+            },
             ["kind"],
         )
         for name, kind in KINDS.items()

@@ -92,6 +92,7 @@ def test_faults_breakdowns_interventions_questions_and_lost_localisation_are_lin
     run: list[Record] = [
         *rounds(3),
         (2.0, "fault", {"robot": "r1", "fault": "ice", "kind": "wheel_slip", "state": "begins"}),
+        (3.25, "fault", {"robot": "r1", "fault": "ice", "kind": "wheel_slip", "state": "acts"}),
         (4.0, "fault", {"robot": "r1", "fault": "ice", "kind": "wheel_slip", "state": "ends"}),
         *((5.0 + t, "believed", {"robot": "r1", "x": 0.0, "y": 0.0, "yaw": 0.0}) for t in range(8)),
         (13.0, "believed", {"robot": "r1", "x": None, "y": None, "yaw": None}),
@@ -108,7 +109,8 @@ def test_faults_breakdowns_interventions_questions_and_lost_localisation_are_lin
         (20.0, "ended", {"code": 2}),
     ]
     told = {each.text: each for each in story_of(run)}
-    assert told["r1: fault `ice` (wheel slip)"].until == 4.0
+    slipped = told["r1: fault `ice` (wheel slip), with an effect from 3.250 s"]
+    assert (slipped.count, slipped.until) == (1, 4.0)
     assert told["r1, r2: was not where it believed to be"].level == "warning"
     assert "r1, r2: bumped into a wall, left" in told
     assert "you changed the run: open door d1" in told

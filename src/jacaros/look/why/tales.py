@@ -13,6 +13,7 @@ from jacaros.look.records.records import Data, is_well_formed
 from jacaros.look.records.words import cut
 from jacaros.look.why.about_now import ending_step
 from jacaros.look.why.chains import shown
+from jacaros.look.why.explanation import seconds
 from jacaros.look.why.past import AT_ONCE, Past
 from jacaros.look.why.patterns import name_of
 
@@ -291,10 +292,13 @@ class Teller:
                     self._tell(event, t, text, data["member"], about=data["member"])
             case "fault":
                 text = text.replace("_", " ")
-                if data["state"] == "ends" and (event, text) in self._tales:
-                    self._tales[event, text].last = t
-                elif data["state"] != "ends":
+                tale = self._tales.get((event, text))
+                if data["state"] not in ("ends", "acts"):
                     self._tell(event, t, text, robot=robot)
+                elif tale is not None and data["state"] == "ends":
+                    tale.last = t
+                elif tale is not None and tale.count == 1 and t > tale.t:
+                    tale.text = f"{text}, with an effect from {seconds(t)}"
             case "believed":  # repeated while it is wrong, then once without a pose
                 if data.get("x") is not None:
                     tale = self._tell(event, t, text, robot=robot)

@@ -60,10 +60,16 @@ async def test_closing_takes_the_nearest_object_in_reach_that_fits(lab: Lab) -> 
 @pytest.mark.world(TABLE, None, "faults:\n  f: {kind: missed_grasp, at: 0, for: 5}\n")
 async def test_a_missed_grasp_closes_on_nothing(lab: Lab) -> None:
     hand = hand_without(lab, "crate")
+
+    def states() -> list[str]:
+        return [each.data["state"] for each in lab.world.log if each.kind == "fault"]
+
+    assert states() == ["begins"]
     result = await hand.grip(0.0)
     assert (result.stalled, result.reached_goal, result.position) == (False, True, 0.0)
     await hand.grip(0.1)
     await lab.clock.sleep(5.0)
+    assert states() == ["begins", "acts", "ends"]
     assert hand.events() == []
     assert (await hand.grip(0.0)).stalled
 

@@ -69,9 +69,9 @@ class Progress:
         robot: name of the robot that makes it, "" for the first.
     """
 
-    metres: Annotated[float | None, number(0.0, math.inf, "m", "driven")] = None
-    battery: Annotated[float | None, number(0.0, 100.0, "%", "level, at or below")] = None
-    tasks: Annotated[int | None, whole(1, "announced tasks")] = None
+    metres: Annotated[float | None, number(0.0, math.inf, "m", "driven since the start")] = None
+    battery: Annotated[float | None, number(0.0, 100.0, "%", "level, at or below this")] = None
+    tasks: Annotated[int | None, whole(1, "tasks announced since the start")] = None
     robot: str = ""
 
     def __bool__(self) -> bool:

@@ -118,28 +118,32 @@ class Faults:
 
     def step(self, time: float) -> None:
         """End and start the faults that are due at *time* (seconds of the world), ends first."""
-        for name in [name for name, end in self._ends.items() if end <= time]:
-            self.end(name)
-        for name in [name for name, begin in self._begins.items() if begin <= time]:
-            del self._begins[name]
-            self.begin(name)
-        for name in [name for name, progress in self._waiting.items() if self._reached(progress)]:
-            del self._waiting[name]
-            self.begin(name)
-        for name in [name for name, felt in self._unfelt.items() if felt is not None and felt()]:
-            self.acts(name)
-        self._look_ahead()
+        if time >= self._due:
+            for name in [name for name, end in self._ends.items() if end <= time]:
+                self.end(name)
+            for name in [name for name, begin in self._begins.items() if begin <= time]:
+                del self._begins[name]
+                self.begin(name)
+            self._look_ahead()
+        for name, progress in tuple(self._waiting.items()):
+            if self._reached(progress):
+                del self._waiting[name]
+                self.begin(name)
+                self._look_ahead()
+        for name, felt in tuple(self._unfelt.items()):
+            if felt is not None and felt():
+                self.acts(name)
 
     def _look_ahead(self) -> None:
-        self.next = min((*self._begins.values(), *self._ends.values()), default=math.inf)
-        if self._waiting or any(self._unfelt.values()):
-            self.next = -math.inf
+        self._due = min((*self._begins.values(), *self._ends.values()), default=math.inf)
+        self.next = -math.inf if self._waiting or any(self._unfelt.values()) else self._due
 
     def acts(self, name: str) -> None:
         """Record that a fault has an effect, if it is the first one since its start."""
         if name in self._unfelt:
             del self._unfelt[name]
             self._tell(self.by_name[name], "acts")
+            self._look_ahead()
 
     def chance(self, fault: Fault) -> Callable[[], bool]:
         """Return a function that decides each time whether a fault happens, and reports its effect."""
