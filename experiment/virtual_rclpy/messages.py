@@ -4,19 +4,22 @@ import importlib.abc
 import importlib.machinery
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from types import ModuleType
 from typing import Any
 
 from jacaros.robots.ros.errors import UnknownInterface
 from jacaros.robots.ros.message import constant
-from jacaros.robots.ros.names import feedback_type, goal_type, result_type
+from jacaros.robots.ros.names import feedback_type, goal_type, request_type, response_type, result_type
 from jacaros.robots.ros.typestore import DefinitionSchema
 
 _SCHEMA = DefinitionSchema()
 _PACKAGE = re.compile(r"(\w+_msgs|std_srvs|\w+_interfaces)(?:\.(msg|srv|action))?")
-_PARTS = {"Goal": goal_type, "Result": result_type, "Feedback": feedback_type}
+_PARTS: Mapping[str, Mapping[str, Callable[[str], str]]] = {
+    "action": {"Goal": goal_type, "Result": result_type, "Feedback": feedback_type},
+    "srv": {"Request": request_type, "Response": response_type},
+}
 
 
 class Interface:
@@ -31,9 +34,10 @@ class Interface:
 
     def __init__(self, type_name: str) -> None:
         self.type_name = type_name
-        if "/action/" not in type_name:
+        self._parts = _PARTS.get(type_name.split("/")[1], {})
+        if not self._parts or type_name.endswith(tuple(f"_{part}" for part in self._parts)):
             _SCHEMA.fields(type_name)
-        elif not type_name.endswith(tuple(f"_{part}" for part in _PARTS)):
+        else:
             _SCHEMA.load(type_name)
 
     def __call__(self, **fields: Any) -> Any:
@@ -44,8 +48,8 @@ class Interface:
         return message
 
     def __getattr__(self, name: str) -> Any:
-        if "/action/" in self.type_name:
-            return Interface(_PARTS[name](self.type_name))
+        if name in self._parts:
+            return Interface(self._parts[name](self.type_name))
         return constant(_SCHEMA.new(self.type_name), name)
 
 

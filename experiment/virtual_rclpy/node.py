@@ -1,4 +1,4 @@
-"""``rclpy.node``: nodes with publishers, subscriptions, timers and parameters."""
+"""``rclpy.node``: nodes with publishers, subscriptions, clients of services, timers and parameters."""
 
 import copy
 from collections.abc import Callable
@@ -7,6 +7,7 @@ from typing import Any
 
 from jacaros.robots.ros.node import Publisher as GraphPublisher
 from jacaros.runtime.clock import Timer as ClockTimer
+from virtual_rclpy.client import Client
 from virtual_rclpy.graph import VirtualGraph, current
 from virtual_rclpy.messages import Interface
 from virtual_rclpy.qos import QoSProfile, qos_of
@@ -95,6 +96,10 @@ class Node:
             lambda sample: self.graph.call(callback, sample.message),
             qos_of(qos_profile),
         )
+
+    def create_client(self, srv_type: Interface, srv_name: str) -> Client:
+        """Make a client of a service."""
+        return Client(self, srv_type, srv_name)
 
     def create_timer(self, timer_period_sec: float, callback: Callable[[], object]) -> Timer:
         """Call *callback* every so many seconds."""
