@@ -13,6 +13,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from beside import importing_beside
 from jacaros.robots.world import World
 from jacaros.robots.world.node import SimNode
 from jacaros.runtime.clock import VirtualClock, new_event_loop
@@ -87,7 +88,7 @@ def _run_program(program: Path, graph: VirtualGraph, result: RunResult) -> int:
     """Run a file as ``python FILE`` does, and return its exit code."""
     _forget_blackboard()
     try:
-        with being_current(graph), installed():
+        with being_current(graph), installed(), importing_beside(program):
             runpy.run_path(str(program), run_name="__main__")
     except TimeIsUp:
         pass
