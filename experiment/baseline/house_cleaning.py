@@ -155,7 +155,10 @@ class HouseCleaning(Node):
         )
 
     def navigate_to(self, name, place):
-        return py_trees.decorators.Retry(name, NavigateTo(name, self.nav2, place), ATTEMPTS)
+        return py_trees.decorators.Retry(name, self.create_way(name, place), ATTEMPTS)
+
+    def create_way(self, name, place):
+        return NavigateTo(name, self.nav2, place)
 
     def tick(self):
         if not (self.nav2.server_is_ready() and self.tasks.get_subscription_count()):

@@ -124,7 +124,10 @@ class Patrol(Node):
         )
 
     def navigate_to(self, name, pose):
-        return py_trees.decorators.Retry(f"To {name}", NavigateTo(name, self.nav2, pose), ATTEMPTS)
+        return py_trees.decorators.Retry(f"To {name}", self.create_way(name, pose), ATTEMPTS)
+
+    def create_way(self, name, pose):
+        return NavigateTo(name, self.nav2, pose)
 
     def tick(self):
         if not self.nav2.server_is_ready():
