@@ -2,12 +2,8 @@
 
 from pathlib import Path
 
-import pytest
-
 from scenarios import SCENARIOS
 from virtual_run import run_baseline
-
-pytest.importorskip("py_trees")
 
 CALL = """
 import rclpy
