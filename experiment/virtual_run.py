@@ -66,7 +66,7 @@ def run_baseline(
         graph = VirtualGraph(clock, runner.get_loop(), given, result.print, result.log)
         node = SimNode(made, graph.node("world"), clock)
         runner.run(_begin(node))
-        clock.call_later(seconds, partial(graph.stop, TimeIsUp()))
+        clock.call_later(seconds, graph.end_program)
         result.exit_code = _run_program(scenario.baseline, graph, result)
         result.seconds = clock.elapsed
         runner.run(_finish(node, graph))

@@ -1,6 +1,7 @@
 """The graph and the time of one virtual run, as the modules of this package share them."""
 
 import asyncio
+from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -28,7 +29,11 @@ class VirtualGraph:
 
     Attributes:
         graph: the graph.
+        spinning: whether callbacks run while the program waits: a thread spins its nodes.
+        concurrent: whether callbacks run while another callback waits: the executor has several threads.
     """
+
+    spinning = concurrent = False
 
     def __init__(
         self,
@@ -42,16 +47,14 @@ class VirtualGraph:
         self.graph = MemoryGraph()
         self._log = log
         self._backends: list[Backend] = []
-        self._end: asyncio.Future[BaseException] = loop.create_future()
+        self._held: deque[tuple[Callable[..., object], tuple[Any, ...]]] = deque()
+        self._in_callback = self._time_is_up = self._time_passes = False
 
     def node(self, name: str, namespace: str = "") -> Any:
         """Join the graph by one more node, whose relative names are in *namespace*."""
         backend = open_backend("memory", self.clock, name, namespace, log=self._log, graph=self.graph)
         self._backends.append(backend)
-        if self.loop.is_running():
-            _without_waiting(backend)
-        else:
-            self.loop.run_until_complete(backend.start())
+        self.loop.run_until_complete(backend.start())
         return backend
 
     async def close(self) -> None:
@@ -60,34 +63,65 @@ class VirtualGraph:
             await backend.close()
 
     def call(self, callback: Callable[..., object], *arguments: Any) -> None:
-        """Run a callback of the program, unless it has ended; what it raises is raised where the program spins."""
-        if self._end.done():
-            return
-        try:
-            callback(*arguments)
-        except BaseException as problem:
-            self.stop(problem)
+        """Let the program run a callback when it spins, or waits while a thread spins, but not inside another one."""
+        self._held.append((callback, arguments))
+        self._return_to_program()
 
-    def stop(self, problem: BaseException) -> None:
-        """Raise *problem* where the program spins."""
-        if not self._end.done():
-            self._end.set_result(problem)
+    def end_program(self) -> None:
+        """Raise `TimeIsUp` where the program waits."""
+        self._time_is_up = True
+        self._return_to_program()
 
     def spin(self) -> None:
         """Let time pass until a callback raises an exception."""
-        raise self.loop.run_until_complete(self._end)
+        self.spinning = True
+        self.wait(lambda: False)
 
+    def wait(self, ready: Callable[[], bool], timeout: float | None = None) -> bool:
+        """Let time pass until a callback has made *ready* true, or for some seconds; return whether it is true."""
+        end = None if timeout is None else self.clock.elapsed + timeout
+        timer = None if timeout is None else self.clock.call_later(timeout, self._return_to_program)
+        try:
+            while not ready():
+                if self._time_is_up:
+                    raise TimeIsUp
+                if end is not None and self.clock.elapsed >= end:
+                    return False
+                if not self._run_callback():
+                    self._let_time_pass()
+        finally:
+            if timer is not None:
+                timer.cancel()
+        return True
 
-def _without_waiting(backend: Backend) -> None:
-    starting = backend.start()
-    try:
-        starting.send(None)  # in a memory graph it never waits
-    except StopIteration:
-        return
-    raise AssertionError("a node of a memory graph waits for its start")
+    def _let_time_pass(self) -> None:
+        self._time_passes = True
+        self.loop.run_forever()  # until it is stopped
+
+    def _return_to_program(self) -> None:
+        if self._time_passes:
+            self._time_passes = False
+            self.loop.stop()
+
+    def _run_callback(self) -> bool:
+        """Run the next callback; return whether there is one that may run now."""
+        if not self._held or not self.spinning or (self._in_callback and not self.concurrent):
+            return False
+        callback, arguments = self._held.popleft()
+        inside, self._in_callback = self._in_callback, True
+        try:
+            callback(*arguments)
+        finally:
+            self._in_callback = inside
+        return True
 
 
 _current: ContextVar[VirtualGraph] = ContextVar("virtual graph")
+
+
+def current_or_none() -> VirtualGraph | None:
+    """Return the graph of the run whose program is running; None outside of one."""
+    return _current.get(None)
 
 
 def current() -> VirtualGraph:

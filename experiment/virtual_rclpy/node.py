@@ -1,6 +1,7 @@
 """``rclpy.node``: nodes with publishers, subscriptions, clients of services, timers and parameters."""
 
 import copy
+from collections import deque
 from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
@@ -35,6 +36,7 @@ class Timer:
         self._graph, self._period, self._callback = graph, period, callback
         self._next = graph.clock.elapsed
         self._timer: ClockTimer | None = None
+        self._due = False
         self._wait()
 
     def cancel(self) -> None:
@@ -49,7 +51,13 @@ class Timer:
 
     def _ring(self) -> None:
         self._wait()
-        self._graph.call(self._callback)
+        if not self._due:
+            self._due = True
+            self._graph.call(self._call)
+
+    def _call(self) -> None:
+        self._due = False
+        self._callback()
 
 
 class Logger:
@@ -89,13 +97,19 @@ class Node:
         callback: Callable[[Any], object],
         qos_profile: QoSProfile | int,
     ) -> Any:
-        """Call *callback* with each message of a topic."""
-        return self.backend.subscription(
-            topic,
-            msg_type.type_name,
-            lambda sample: self.graph.call(callback, sample.message),
-            qos_of(qos_profile),
-        )
+        """Call *callback* with each message of a topic; the oldest are dropped while callbacks are held."""
+        qos = qos_of(qos_profile)
+        waiting: deque[Any] = deque(maxlen=qos.depth)
+
+        def take() -> None:
+            if waiting:
+                callback(waiting.popleft())
+
+        def arrive(sample: Any) -> None:
+            waiting.append(sample.message)
+            self.graph.call(take)
+
+        return self.backend.subscription(topic, msg_type.type_name, arrive, qos)
 
     def create_client(self, srv_type: Interface, srv_name: str) -> Client:
         """Make a client of a service."""
