@@ -1,4 +1,4 @@
-"""How a run ended, judged from the ground truth and from what its program said; and the damage on the way."""
+"""Judge how a run ended, from the ground truth and from what its program said; and the damage on the way."""
 
 import re
 from typing import NamedTuple
@@ -6,8 +6,8 @@ from typing import NamedTuple
 from jacaros.robots.world import GroundTruth
 from jacaros.testing import RunResult
 
-DONE, TOLD, AS_IF_DONE, HUNG = "done", "failed and told", "ended as if done", "hung in silence"
-ENDS = (DONE, TOLD, AS_IF_DONE, HUNG)
+DONE, TOLD, SILENT = "done", "told", "silent"
+ENDS = (DONE, TOLD, SILENT)
 """The outcomes of runs."""
 
 CALL = re.compile(r"(?<!= )\bhelp\b|\bwhat shall I do\?|\bfailed\b", re.IGNORECASE)
@@ -28,34 +28,32 @@ class Damage(NamedTuple):
     elsewhere: int
 
 
-def told_at(result: RunResult) -> float | None:
-    """Return when the program first said that it failed: seconds of the run's clock; None if it did not.
+def effect_at(result: RunResult) -> float | None:
+    """Return when the disturbance first had an effect, in seconds; None if the program ended before."""
+    effects = (event for event in result.ground_truth.events_of("fault") if event.data["state"] == "acts")
+    return next((each.time for each in effects if each.time <= result.seconds), None)
 
-    It says so by a call for help, by a goal that is logged as failed, or by an exit status other than 0.
+
+def told_at(result: RunResult, effect: float) -> float | None:
+    """Return when the program first said that it failed, in seconds of the run's clock; None if it did not.
+
+    It says so by a call for help, by a goal that is logged as failed, or by an exit status other than 0.  A word before
+    the *effect* is about something else.
     """
-    calls = (time for time, text in result.timed if CALL.search(text))
+    calls = (time for time, text in result.timed if time >= effect and CALL.search(text))
     return next(calls, result.seconds if result.exit_code else None)
 
 
-def end_of(result: RunResult, passed: bool, limit: float) -> str:
-    """Return how a run ended that was stopped after *limit* seconds: one of `ENDS`."""
-    if passed:
+def end_of(told: float | None, done: bool) -> str:
+    """Return how a run ended: one of `ENDS`."""
+    if done:
         return DONE
-    if told_at(result) is not None:
-        return TOLD
-    return HUNG if result.seconds >= limit else AS_IF_DONE
+    return SILENT if told is None else TOLD
 
 
-def disturbed_at(truth: GroundTruth) -> float | None:
-    """Return when the first disturbance began, in seconds; None if the program had ended before."""
-    begins = (event.time for event in truth.events_of("fault") if event.data["state"] == "begins")
-    return next(begins, None)
-
-
-def damage(truth: GroundTruth) -> Damage:
-    """Return the damage after the first disturbance."""
-    begin = disturbed_at(truth)
-    events = [event for event in truth.events if begin is not None and event.time >= begin]
+def damage(truth: GroundTruth, effect: float) -> Damage:
+    """Return the damage from the *effect* on."""
+    events = [event for event in truth.events if event.time >= effect]
     tasks = (event.data for event in events if event.kind == "task")
     return Damage(
         sum(event.kind in ("bump", "collision") for event in events),

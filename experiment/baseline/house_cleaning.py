@@ -7,6 +7,7 @@ import py_trees
 import rclpy
 from action_msgs.msg import GoalStatus
 from nav2_msgs.action import NavigateToPose
+from nav2_msgs.srv import ClearEntireCostmap
 from py_trees.common import ComparisonExpression, Status
 from rclpy.action import ActionClient
 from rclpy.node import Node
@@ -23,7 +24,6 @@ HALLWAY = (0.0, 0.0)
 DOCK = (1.0, 1.0)
 ROUNDS = 4
 LOW, FULL = 20, 100  # percent
-ATTEMPTS = 3  # so often a way is tried
 PERIOD = 0.1  # seconds between two ticks
 
 
@@ -61,6 +61,19 @@ class NavigateTo(py_trees.behaviour.Behaviour):
             self.sent.add_done_callback(
                 lambda sent: sent.result().accepted and sent.result().cancel_goal_async()
             )
+
+
+class ClearCostmap(py_trees.behaviour.Behaviour):
+    """Lets Nav2 forget the obstacles that it has seen so far."""
+
+    def __init__(self, name, client):
+        super().__init__(name)
+        self.client = client
+
+    def update(self):
+        if self.client.service_is_ready():
+            self.client.call_async(ClearEntireCostmap.Request())
+        return Status.SUCCESS
 
 
 class CleaningTask(py_trees.behaviour.Behaviour):
@@ -106,7 +119,10 @@ class HouseCleaning(Node):
 
     def __init__(self):
         super().__init__("house_cleaning")
+        self.attempts = self.declare_parameter("attempts", 20).value  # so often a way is tried
+        self.pause = self.declare_parameter("pause", 2.0).value  # seconds between two attempts
         self.nav2 = ActionClient(self, NavigateToPose, "navigate_to_pose")
+        self.costmap = self.create_client(ClearEntireCostmap, "global_costmap/clear_entirely_global_costmap")
         self.tasks = self.create_publisher(String, "cleaning/task", 10)
         self.tools = self.create_publisher(String, "cleaning/tool", 10)
         self.blackboard = py_trees.blackboard.Client(name="house_cleaning")
@@ -155,7 +171,20 @@ class HouseCleaning(Node):
         )
 
     def navigate_to(self, name, place):
-        return py_trees.decorators.Retry(name, self.create_way(name, place), ATTEMPTS)
+        """Try again after a pause, in which Nav2 forgets obstacles that may have moved."""
+        again = py_trees.composites.Sequence(
+            f"{name} again",
+            memory=True,
+            children=[
+                ClearCostmap("Clear", self.costmap),
+                py_trees.timers.Timer("Pause", self.pause),
+                self.create_way(name, place),
+            ],
+        )
+        retry = py_trees.decorators.Retry(f"Retry {name}", again, self.attempts - 1)
+        return py_trees.composites.Selector(
+            f"To {name}", memory=True, children=[self.create_way(name, place), retry]
+        )
 
     def create_way(self, name, place):
         return NavigateTo(name, self.nav2, place)

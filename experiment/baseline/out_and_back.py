@@ -10,9 +10,6 @@ from tf2_ros import Buffer, TransformListener
 
 PERIOD = 0.1  # seconds between two commands
 LEG = 26  # commands
-SPEED = 0.5  # metres per second
-TURN_RATE = 1.0  # radians per second, at most
-TOLERANCE = math.radians(1.0)
 
 
 class OutAndBack(Node):
@@ -23,6 +20,9 @@ class OutAndBack(Node):
         self.commands = self.create_publisher(Twist, "cmd_vel", 10)
         self.tf_buffer = Buffer()
         self.tf_listener = TransformListener(self.tf_buffer, self)
+        self.speed = self.declare_parameter("speed", 0.65).value  # metres per second
+        self.turn_rate = self.declare_parameter("turn_rate", 1.0).value  # radians per second, at most
+        self.turns_within = math.radians(self.declare_parameter("turns_within", 0.3).value)  # degrees
         self.velocities = self.out_and_back()
         self.create_timer(PERIOD, self.step)
 
@@ -38,10 +38,10 @@ class OutAndBack(Node):
         start = self.heading()
         for leg, heading in (("out", start + math.pi), ("back", start)):
             self.get_logger().info(f"driving {leg}")
-            yield from [(SPEED, 0.0)] * LEG
+            yield from [(self.speed, 0.0)] * LEG
             yield from [(0.0, 0.0)] * 10  # until it stands
-            while abs(error := math.remainder(heading - self.heading(), math.tau)) > TOLERANCE:
-                yield 0.0, max(-TURN_RATE, min(TURN_RATE, 2.0 * error))
+            while abs(error := math.remainder(heading - self.heading(), math.tau)) > self.turns_within:
+                yield 0.0, max(-self.turn_rate, min(self.turn_rate, 2.0 * error))
             yield from [(0.0, 0.0)] * 5
         raise SystemExit
 

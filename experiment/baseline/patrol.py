@@ -8,6 +8,7 @@ import py_trees
 import rclpy
 from action_msgs.msg import GoalStatus
 from nav2_msgs.action import NavigateToPose
+from nav2_msgs.srv import ClearEntireCostmap
 from py_trees.common import ComparisonExpression, Status
 from rclpy.action import ActionClient
 from rclpy.node import Node
@@ -17,8 +18,6 @@ from sensor_msgs.msg import BatteryState
 CORNERS = ((2.0, 0.0, 0.0), (2.0, 2.0, 90.0), (0.0, 2.0, 180.0), (0.0, 0.0, 270.0))  # metres and degrees
 DOCK = (1.0, 1.0, 0.0)
 LOW, FULL = 20, 100  # percent
-SHIFT = 10  # recharges
-ATTEMPTS = 3  # so often a way is tried
 
 
 class NavigateTo(py_trees.behaviour.Behaviour):
@@ -59,6 +58,19 @@ class NavigateTo(py_trees.behaviour.Behaviour):
             )
 
 
+class ClearCostmap(py_trees.behaviour.Behaviour):
+    """Lets Nav2 forget the obstacles that it has seen so far."""
+
+    def __init__(self, name, client):
+        super().__init__(name)
+        self.client = client
+
+    def update(self):
+        if self.client.service_is_ready():
+            self.client.call_async(ClearEntireCostmap.Request())
+        return Status.SUCCESS
+
+
 class Report(py_trees.behaviour.Behaviour):
     """Calls a function when the tree has come this far."""
 
@@ -77,7 +89,11 @@ class Patrol(Node):
     def __init__(self):
         super().__init__("patrol")
         self.visits, self.recharges, self.lowest = 0, 0, FULL
+        self.shift = self.declare_parameter("shift", 10).value  # recharges
+        self.attempts = self.declare_parameter("attempts", 20).value  # so often a way is tried
+        self.pause = self.declare_parameter("pause", 2.0).value  # seconds between two attempts
         self.nav2 = ActionClient(self, NavigateToPose, "navigate_to_pose")
+        self.costmap = self.create_client(ClearEntireCostmap, "global_costmap/clear_entirely_global_costmap")
         self.blackboard = py_trees.blackboard.Client(name="patrol")
         self.blackboard.register_key("battery", access=py_trees.common.Access.WRITE)
         self.blackboard.battery = FULL
@@ -124,7 +140,20 @@ class Patrol(Node):
         )
 
     def navigate_to(self, name, pose):
-        return py_trees.decorators.Retry(f"To {name}", self.create_way(name, pose), ATTEMPTS)
+        """Try again after a pause, in which Nav2 forgets obstacles that may have moved."""
+        again = py_trees.composites.Sequence(
+            f"{name} again",
+            memory=True,
+            children=[
+                ClearCostmap("Clear", self.costmap),
+                py_trees.timers.Timer("Pause", self.pause),
+                self.create_way(name, pose),
+            ],
+        )
+        retry = py_trees.decorators.Retry(f"Retry {name}", again, self.attempts - 1)
+        return py_trees.composites.Selector(
+            f"To {name}", memory=True, children=[self.create_way(name, pose), retry]
+        )
 
     def create_way(self, name, pose):
         return NavigateTo(name, self.nav2, pose)
@@ -143,7 +172,7 @@ class Patrol(Node):
     def arrived(self, corner):
         self.get_logger().info(f"round {self.visits // 4 + 1}, corner {corner}")
         self.visits += 1
-        if self.recharges >= SHIFT:
+        if self.recharges >= self.shift:
             self.end_shift()
 
     def in_dock(self):

@@ -10,11 +10,8 @@ from tf2_ros import Buffer, TransformListener
 
 PERIOD = 0.1  # seconds between two commands
 SIDE = 1.0  # metres
-SPEED = 0.4  # metres per second, at most
 SLOW = 0.05
-TURN_RATE = 1.0  # radians per second, at most
 NEAR = 0.02  # metres
-STRAIGHT = math.radians(1.0)
 
 
 class Square(Node):
@@ -25,13 +22,16 @@ class Square(Node):
         self.commands = self.create_publisher(Twist, "cmd_vel", 10)
         self.tf_buffer = Buffer()
         self.tf_listener = TransformListener(self.tf_buffer, self)
+        self.speed = self.declare_parameter("speed", 0.65).value  # metres per second
+        self.turn_rate = self.declare_parameter("turn_rate", 1.0).value  # radians per second, at most
+        self.turns_within = math.radians(self.declare_parameter("turns_within", 0.3).value)  # degrees
         self.velocities = self.square()
         self.create_timer(PERIOD, self.step)
 
     def step(self):
         twist = Twist()
         speed, turn_rate = next(self.velocities)
-        twist.linear.x, twist.angular.z = speed, max(-TURN_RATE, min(TURN_RATE, turn_rate))
+        twist.linear.x, twist.angular.z = speed, max(-self.turn_rate, min(self.turn_rate, turn_rate))
         self.commands.publish(twist)
 
     def square(self):
@@ -57,11 +57,11 @@ class Square(Node):
             aside = dy * math.cos(heading) - dx * math.sin(heading)
             if left < NEAR:
                 break
-            yield max(SLOW, min(SPEED, left)), 2.0 * (math.remainder(heading - yaw, math.tau) - aside)
+            yield max(SLOW, min(self.speed, left)), 2.0 * (math.remainder(heading - yaw, math.tau) - aside)
         yield from [(0.0, 0.0)] * 5  # until it stands
 
     def turn_to(self, heading):
-        while abs(error := math.remainder(heading - self.pose()[2], math.tau)) > STRAIGHT:
+        while abs(error := math.remainder(heading - self.pose()[2], math.tau)) > self.turns_within:
             yield 0.0, 2.0 * error
         yield from [(0.0, 0.0)] * 5
 
