@@ -8,6 +8,12 @@ from typing import NamedTuple
 
 from outcomes import Damage
 
+DOCS = Path(__file__).parents[1] / "docs"
+VIRTUAL = DOCS / "experiment.jsonl.gz"
+"""The runs on the virtual clock."""
+BEFORE, ROS2 = DOCS / "experiment_before.jsonl.gz", DOCS / "experiment_ros2.jsonl.gz"
+"""The runs of an earlier version of the agents, and those on real ROS 2."""
+
 
 class Outcome(NamedTuple):
     """How a run ended.

@@ -13,16 +13,14 @@ from pathlib import Path
 import page
 import record
 from disturbances import FURTHER_SEEDS, SEEDS
-from record import Outcome
+from record import BEFORE, ROS2, Outcome
+from record import VIRTUAL as RECORD
 from runs import Family, families, run_all
 from scenarios import FURTHER_SCENARIOS, SCENARIOS
 from sides import NEEDS, can_run
 
 DOCS = Path(__file__).parents[1] / "docs"
 PAGE, IMAGES, README = DOCS / "experiment.md", DOCS / "images", DOCS.parent / "README.md"
-RECORD = DOCS / "experiment.jsonl.gz"
-BEFORE, ROS2 = DOCS / "experiment_before.jsonl.gz", DOCS / "experiment_ros2.jsonl.gz"
-"""Records of other runs: of an earlier version of the agents, and on real ROS 2."""
 
 QUICK = [Family(scenario, SEEDS[0]) for scenario in SCENARIOS] + [
     Family(scenario, FURTHER_SEEDS[0]) for scenario in FURTHER_SCENARIOS

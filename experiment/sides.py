@@ -92,11 +92,17 @@ Change = Callable[[str], str]
 
 def run_agents(setting: Setting, change: Change | None = None, self_driving: bool = False) -> RunResult:
     """Run the agents of a scenario, with a change to their program and to the library of navigation."""
-    project = project_of(setting.scenario, self_driving)
-    if change is not None or setting.scenario == "patrol":
-        project = _changed(project, change, setting.folder)
+    project = project_for(setting, change, self_driving)
     world = str(world_of(setting.scenario, setting.folder))
     return run_project(project, world=world, seconds=setting.limit, seed=setting.seed, faults=setting.faults)
+
+
+def project_for(setting: Setting, change: Change | None = None, self_driving: bool = False) -> Path:
+    """Return the project of a run, a copy if its program is changed: a patrol has a short shift."""
+    project = project_of(setting.scenario, self_driving)
+    if change is not None or setting.scenario == "patrol":
+        return _changed(project, change, setting.folder)
+    return project
 
 
 def project_of(scenario: str, self_driving: bool = False) -> Path:
