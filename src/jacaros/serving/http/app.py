@@ -35,6 +35,8 @@ MOST_WATCHED = 50
 """Maximum number of beliefs that one event stream watches."""
 HEARTBEAT = 15.0
 """Seconds of silence after which an event stream sends a comment, to notice dead clients."""
+WRITES = 1_000
+"""Maximum number of writes per second to all event streams together: with many streams, more events share a write."""
 
 
 class Resources:
@@ -47,6 +49,7 @@ class Resources:
 
     def __init__(self, clients: RemoteCallers[Client], title: str) -> None:
         self._clients, self._title = clients, title
+        self._streams = 0
 
     def app(self, mounts: Mapping[str, ASGIApp]) -> ASGIApp:
         """Return the application, with further ones at their paths."""
@@ -220,8 +223,8 @@ class Resources:
         async def lines() -> AsyncIterator[str]:
             try:
                 yield ": connected\n\n"
-                async for each in messages(stream):
-                    yield f"data: {each}\n\n" if each else ":\n\n"
+                async for some in self._paced(stream):
+                    yield "".join(f"data: {each}\n\n" for each in some) or ":\n\n"
             finally:
                 await asyncio.shield(client.end(stream, stop))
 
@@ -238,8 +241,8 @@ class Resources:
         try:
             await socket.accept()
             reading = asyncio.create_task(_until_closed(socket, stream))
-            async for each in messages(stream):
-                if each:
+            async for some in self._paced(stream):
+                for each in some:
                     await socket.send_text(each)
             reading.cancel()
             await socket.close(1001)
@@ -247,6 +250,16 @@ class Resources:
             pass  # the client has gone
         finally:
             await asyncio.shield(client.end(stream, stop))
+
+    async def _paced(self, stream: Stream) -> AsyncIterator[list[str]]:
+        """Yield the events of a stream, with a rest between writes."""
+        self._streams += 1
+        try:
+            async for some in messages(stream):
+                yield some
+                await asyncio.sleep(self._streams / WRITES)
+        finally:
+            self._streams -= 1
 
 
 async def _until_closed(socket: WebSocket, stream: Stream) -> None:
@@ -257,22 +270,19 @@ async def _until_closed(socket: WebSocket, stream: Stream) -> None:
     stream.put(None)
 
 
-async def messages(stream: Stream) -> AsyncIterator[str]:
-    """Yield the events of a stream until its end, and empty texts in times of silence."""
+async def messages(stream: Stream) -> AsyncIterator[list[str]]:
+    """Yield the events of a stream until its end, and empty lists in times of silence."""
     while True:
         try:
             async with asyncio.timeout(HEARTBEAT):
                 found = await stream.take()
         except TimeoutError:
-            yield ""
-            continue
+            found = []
         except Lagging:
-            yield encoded({"event": "lagging"})
+            found = [encoded({"event": "lagging"}), None]
+        yield [each for each in found if each is not None]
+        if None in found:
             return
-        for each in found:
-            if each is None:
-                return
-            yield each
 
 
 async def _waited(

@@ -14,16 +14,35 @@ from jacaros.serving.service import Event, Service, Session
 
 MOST_STREAMS = 128
 """Maximum number of event streams of one caller."""
+REMEMBERED = 2_000
+"""Number of newest events whose JSON is remembered."""
 
 Stream = Outbox[str | None]
 """Events as JSON for one stream; None ends it."""
 
 
+class Encoder:
+    """Encodes each event once for all streams of all callers."""
+
+    def __init__(self) -> None:
+        self._known: dict[int, tuple[Event, str]] = {}
+
+    def text(self, event: Event) -> str:
+        """Return an event as JSON."""
+        key = id(event.get("beliefs", event))  # streams have events of their own about the same beliefs
+        if key not in self._known:
+            if len(self._known) >= REMEMBERED:
+                del self._known[next(iter(self._known))]
+            self._known[key] = event, encoded(event)  # with the event, so that no other gets its id
+        return self._known[key][1]
+
+
 class Client(RemoteCaller):
     """A caller over HTTP, with its event streams."""
 
-    def __init__(self, caller: Caller, crossing: Crossing, service: Service) -> None:
+    def __init__(self, caller: Caller, crossing: Crossing, service: Service, encoder: Encoder) -> None:
         super().__init__(caller, crossing, service)
+        self._encoder = encoder
         self.streams: dict[Stream, None] = {}
         self._events = Outbox[tuple[Event, Stream | None]](asyncio.get_running_loop())
         self._distributing: asyncio.Task[None] | None = None
@@ -100,7 +119,7 @@ class Client(RemoteCaller):
                 self._events = Outbox(asyncio.get_running_loop())
                 continue
             for event, only in events:
-                told = encoded(event)
+                told = self._encoder.text(event)
                 for stream in tuple(self.streams) if only is None else (only,):
                     stream.put(told, _subject(event))
 

@@ -21,7 +21,7 @@ from jacaros.serving import running
 from jacaros.serving.access import LOOPBACK, Hosts, listening_socket
 from jacaros.serving.crossing import Crossing, DoorThread
 from jacaros.serving.http.app import Resources
-from jacaros.serving.http.clients import Client
+from jacaros.serving.http.clients import Client, Encoder
 from jacaros.serving.http.guard import LARGEST, Guard
 from jacaros.serving.http.protocol import MOST_CONNECTIONS, LimitedConnection, LimitedWebSocket
 from jacaros.serving.remote import RemoteCallers
@@ -116,7 +116,8 @@ class HttpDoor:
             self._system.console.log(text + trace, "error")
 
     async def _serve(self, crossing: Crossing) -> None:
-        clients = RemoteCallers(lambda caller: Client(caller, crossing, self._service))
+        encoder = Encoder()
+        clients = RemoteCallers(lambda caller: Client(caller, crossing, self._service, encoder))
         async with AsyncExitStack() as stack:
             mounts = {
                 path: await stack.enter_async_context(make(crossing)) for path, make in self._mounts.items()

@@ -13,7 +13,7 @@ import websockets
 from http_lab import PROGRAM, Lab, problem, serve, token
 
 from jacaros.serving import remote
-from jacaros.serving.http import protocol
+from jacaros.serving.http import clients, protocol
 from jacaros.serving.http.app import messages
 from jacaros.serving.http.clients import Stream
 
@@ -224,9 +224,21 @@ def test_a_reader_that_lags_gets_a_last_event() -> None:
         stream = Stream(asyncio.get_running_loop(), most=1)
         stream.put("{}")
         stream.put("{}")
-        return [json.loads(each) async for each in messages(stream)]
+        return [json.loads(each) async for some in messages(stream) for each in some]
 
     assert asyncio.run(main()) == [{"event": "lagging"}]
+
+
+def test_an_event_is_encoded_once_for_all_streams(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(clients, "REMEMBERED", 2)
+    encoder, facts, other = clients.Encoder(), [{"level": 80}], [{"level": 80}]
+    goal = {"event": "goal", "id": "1"}
+    first, second = ({"event": "belief", "agent": "bob", "beliefs": facts} for _ in range(2))
+
+    assert encoder.text(first) is encoder.text(second)
+    assert encoder.text(goal) is encoder.text(goal) == '{"event":"goal","id":"1"}'
+    assert encoder.text({"event": "belief", "agent": "eve", "beliefs": other}) != encoder.text(second)
+    assert len(encoder._known) == 2
 
 
 def test_a_hundred_clients_watch() -> None:
