@@ -6,7 +6,7 @@ from collections.abc import Callable
 from jacaros.agents.language.offers import Offer
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.state.intention import GOAL, Intention
-from jacaros.agents.terms.values import Term, atom, bare
+from jacaros.agents.terms.values import Term, Var, atom, bare
 from jacaros.runtime.mas.agents.host import AgentHost
 from jacaros.runtime.mas.history.history import observe_turns
 from jacaros.runtime.trace import Cause
@@ -164,7 +164,8 @@ class OfferingAgent:
 
     def facts(self, offer: Offer) -> Facts:
         """Return the beliefs that an offer is about."""
-        return answers_of(self.mind, offer)
+        asked = {each.name: Var() for each in offer.parameters}
+        return answers_of(self.mind, offer, [*asked.values()], asked)
 
     def watch(self, offer: Offer, listener: OnFacts, later: bool = False) -> Callable[[], None]:
         """Call *listener* with the beliefs that an offer is about, now and when they change. Return what ends this.

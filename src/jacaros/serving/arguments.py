@@ -42,13 +42,15 @@ from jacaros.serving.callers import RequestError, check_text
 
 Data = Any
 """JSON data: None, Booleans, numbers, strings, lists, and dictionaries with strings as keys."""
+Arguments = Mapping[str, Data] | Sequence[Data]
+"""Arguments as JSON data, by name or in order."""
 DEEPEST = 20
 """Maximum depth of data."""
 MOST = 10_000
 """Maximum number of elements of data, and of characters of its strings."""
 
 
-def terms_of(offer: Offer, given: Mapping[str, Data] | Sequence[Data]) -> list[Term]:
+def terms_of(offer: Offer, given: Arguments) -> list[Term]:
     """Return the arguments of an offer as terms; results are variables.
 
     Args:
@@ -81,7 +83,7 @@ def terms_of(offer: Offer, given: Mapping[str, Data] | Sequence[Data]) -> list[T
     return terms
 
 
-def fitting(offers: Sequence[Offer], given: Mapping[str, Data] | Sequence[Data]) -> tuple[Offer, list[Term]]:
+def fitting(offers: Sequence[Offer], given: Arguments) -> tuple[Offer, list[Term]]:
     """Return the one of the offers of a name that data fits by number, names and kinds, and its arguments as terms.
 
     Raises:
@@ -99,13 +101,13 @@ def fitting(offers: Sequence[Offer], given: Mapping[str, Data] | Sequence[Data])
     raise RequestError("invalid_arguments", f"expected {forms}")
 
 
-def _has_form(offer: Offer, given: Mapping[str, Data] | Sequence[Data]) -> bool:
+def _has_form(offer: Offer, given: Arguments) -> bool:
     if isinstance(given, Mapping):
         return given.keys() == {each.name for each in offer.inputs}
     return len(given) == len(offer.inputs)
 
 
-def _fits(offer: Offer, given: Mapping[str, Data] | Sequence[Data]) -> bool:
+def _fits(offer: Offer, given: Arguments) -> bool:
     try:
         terms_of(offer, given)
     except RequestError:

@@ -54,6 +54,10 @@ class Caller:
         """Return whether something is offered to it."""
         return self.has(offer.roles)
 
+    def sees(self, owner: "Caller") -> bool:
+        """Return whether it sees the goals of a caller: its own, or all for an operator."""
+        return self == owner or self.has((OPERATOR,))
+
     def require(self, *roles: str) -> None:
         """Check that it has one of these roles.
 

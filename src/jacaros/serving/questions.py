@@ -16,7 +16,7 @@ from jacaros.agents.terms.text import excerpt, text
 from jacaros.agents.terms.values import Term, Var
 from jacaros.runtime.mas.embedding.running_agent import question
 from jacaros.runtime.time_limit import within
-from jacaros.serving.arguments import Data, data_of, literal_of, named
+from jacaros.serving.arguments import Data, data_of, literal_of
 from jacaros.serving.callers import LONGEST, RequestError, check_text
 
 T = TypeVar("T")
@@ -26,36 +26,21 @@ STEPS, SECONDS = 10_000, 0.1
 """Limits of a question: steps (see `jacaros.agents.mind.rules.context.reading`), and seconds."""
 
 
-def answers_of(mind: Mind, offer: Offer, arguments: Sequence[Term] | None = None) -> list[dict[str, Data]]:
-    """Return the answers of an offered question, or the beliefs of an offer: the arguments of each by name.
+def answers_of(
+    mind: Mind, offer: Offer, arguments: Sequence[Term], asked: Mapping[str, Term]
+) -> list[dict[str, Data]]:
+    """Return the values that are asked for in each answer of an offered question, or in each offered belief.
 
     Args:
         mind: the agent.
         offer: what it offers.
-        arguments: the arguments, with variables for those that are asked for. Default: all are asked for.
+        arguments: its arguments, with variables.
+        asked: the variables by name; those that begin with ``_`` are left out.
 
     Raises:
         RequestError: it cannot be answered.
     """
-    asked = [Var() for _ in offer.parameters] if arguments is None else arguments
-    formula = literal_of(offer, asked)
-
-    def answer(view: ReadOnly) -> list[dict[str, Data]]:
-        found = islice(view.answers(formula), MOST)
-        return [named(offer, [resolve(each) for each in asked]) for _ in found]
-
-    return _asked(mind, answer)
-
-
-def variables_of(
-    mind: Mind, offer: Offer, arguments: Sequence[Term], variables: Mapping[str, Term]
-) -> list[dict[str, Data]]:
-    """Return the values of variables of a question in each answer; those that begin with ``_`` are left out.
-
-    Raises:
-        RequestError: it cannot be answered.
-    """
-    shown = {name: value for name, value in variables.items() if name[0] != "_"}
+    shown = {name: value for name, value in asked.items() if name[0] != "_"}
     formula = literal_of(offer, arguments)
 
     def answer(view: ReadOnly) -> list[dict[str, Data]]:

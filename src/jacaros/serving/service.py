@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 from jacaros.agents.language.offers import OBSERVER, OPERATOR, USER, Offer
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.terms.text import text
-from jacaros.agents.terms.values import Annotated, String, structure
+from jacaros.agents.terms.values import Annotated, String, Term, structure
 from jacaros.look.records import records
 from jacaros.look.records.records import Record
 from jacaros.look.why.explanation import Explanation
@@ -25,11 +25,11 @@ from jacaros.runtime.mas.system import System
 from jacaros.runtime.trace import Cause
 from jacaros.serving import artifacts
 from jacaros.serving.agent import OfferingAgent, OnFacts
-from jacaros.serving.arguments import Data, check_terms, fitting, literal_of, parsed, split_key
+from jacaros.serving.arguments import Arguments, Data, check_terms, fitting, literal_of, parsed, split_key
 from jacaros.serving.callers import Allowance, Caller, RequestError, check_text
 from jacaros.serving.console import Operator, soon
 from jacaros.serving.goals import RequestedGoal
-from jacaros.serving.questions import answers_of, variables_of
+from jacaros.serving.questions import answers_of
 
 T = TypeVar("T")
 KEPT = 1_000
@@ -109,11 +109,7 @@ class Service:
     def goal_changed(self, goal: RequestedGoal) -> None:
         """A goal has changed: tell its caller, and operators."""
         owner = goal.caller
-        concerned = [
-            each
-            for each in self.sessions
-            if each.listeners and (each.caller == owner or each.caller.has(("operator",)))
-        ]
+        concerned = [each for each in self.sessions if each.listeners and each.caller.sees(owner)]
         if concerned:
             told = {"event": "goal", **goal.data()}
             for session in concerned:
@@ -281,30 +277,31 @@ class Session:
 
     # ---- goals
 
-    def achieve(
-        self, agent: str, goal: str, arguments: Mapping[str, Data] | Sequence[Data] = ()
-    ) -> RequestedGoal:
+    def achieve(self, agent: str, goal: str, arguments: Arguments | None = None) -> RequestedGoal:
         """Give an agent a goal that it offers.
 
         Args:
             agent: name of the agent.
-            goal: name of the goal; ``deliver/2`` if several have that name.
+            goal: name of the goal, ``deliver/2`` if several have that name; without arguments, text in the language.
             arguments: JSON data, by name or in order.
         """
         with self._request():
             offering = self._agent(agent)
-            return self._give(offering, *fitting(self._offers(offering, "goal", goal), arguments))
+            return self._give(offering, *self._requested(offering, "goal", goal, arguments))
 
-    def achieve_text(self, agent: str, written: str) -> RequestedGoal:
-        """Give an agent a goal that it offers, as text in the language."""
-        with self._request():
-            offering = self._agent(agent)
-            name, arguments, _ = parsed(written)
-            offer = self._offer(offering, "goal", name, len(arguments))
-            check_terms(offer, arguments)
-            return self._give(offering, offer, arguments)
+    def _requested(
+        self, agent: OfferingAgent, what: str, written: str, arguments: Arguments | None
+    ) -> tuple[Offer, Sequence[Term]]:
+        """Return the offer that a request is about, and its arguments as terms."""
+        if arguments is None:
+            written, terms, _ = parsed(written)
+            if terms:
+                offer = self._offer(agent, what, written, len(terms))
+                check_terms(offer, terms)
+                return offer, terms
+        return fitting(self._offers(agent, what, written), arguments or ())
 
-    def _give(self, agent: OfferingAgent, offer: Offer, arguments: Sequence[Any]) -> RequestedGoal:
+    def _give(self, agent: OfferingAgent, offer: Offer, arguments: Sequence[Term]) -> RequestedGoal:
         if len(self._own) >= MOST_ALIVE:
             raise RequestError("too_many_requests", f"{MOST_ALIVE} goals of this session have not ended")
         service = self._service
@@ -327,7 +324,7 @@ class Session:
 
     def _goal(self, id: str) -> RequestedGoal:
         found = self._service.goals.get(id)
-        if found is None or not (found.caller == self.caller or self.caller.has(("operator",))):
+        if found is None or not self.caller.sees(found.caller):
             raise RequestError("unknown_goal", f"no goal `{id[:80]}`")
         return found
 
@@ -335,7 +332,7 @@ class Session:
         """Return the goals of the caller, or all for an operator, the newest last."""
         with self._request():
             all_goals = self._service.goals.values()
-            return [g for g in all_goals if g.caller == self.caller or self.caller.has(("operator",))]
+            return [each for each in all_goals if self.caller.sees(each.caller)]
 
     def cancel(self, id: str) -> RequestedGoal:
         """Cancel a goal: its intention is dropped, and cleaned up. Cancelling is not limited: robots must stop."""
@@ -386,51 +383,46 @@ class Session:
                 with suppress(RequestError):
                     self._watch(each, later=True)
 
-    def ask(self, agent: str, written: str) -> list[dict[str, Data]]:
-        """Ask an agent a question that it offers, such as ``route(lab, To, Metres)``; beliefs can be asked for, too.
+    def ask(self, agent: str, question: str, arguments: Arguments | None = None) -> list[dict[str, Data]]:
+        """Ask an agent a question that it offers.
+
+        Args:
+            agent: name of the agent.
+            question: name of the question; without arguments, text in the language, such as
+                ``route(lab, To, Metres)``, which may also ask for a belief.
+            arguments: JSON data, by name or in order.
 
         Returns:
-            The values of the question's variables in each answer.
+            The results in each answer by name; for a text, the values of its variables.
         """
         with self._request():
             offering = self._agent(agent)
-            name, arguments, variables = parsed(written)
-            what = "question" if offering.find("question", name, len(arguments)) else "belief"
-            offer = self._offer(offering, what, name, len(arguments))
-            check_terms(offer, arguments, open_inputs=True)
-            return variables_of(offering.mind, offer, arguments, variables)
+            if arguments is None:
+                name, terms, asked = parsed(question)
+                what = "question" if offering.find("question", name, len(terms)) else "belief"
+                offer = self._offer(offering, what, name, len(terms))
+                check_terms(offer, terms, open_inputs=True)
+            else:
+                offer, terms = fitting(self._offers(offering, "question", question), arguments)
+                asked = {
+                    each.name: term for each, term in zip(offer.parameters, terms, strict=True) if each.output
+                }
+            return answers_of(offering.mind, offer, terms, asked)
 
-    def query(
-        self, agent: str, name: str, arguments: Mapping[str, Data] | Sequence[Data] = ()
-    ) -> list[dict[str, Data]]:
-        """Ask an agent a question that it offers, with JSON data. Return the results of each answer by name."""
+    def tell(self, agent: str, belief: str, arguments: Arguments | None = None, untell: bool = False) -> None:
+        """Tell an agent a belief that it takes from callers, or take it back.
+
+        Args:
+            agent: name of the agent.
+            belief: name of the belief; without arguments, text in the language.
+            arguments: JSON data, by name or in order.
+            untell: take it back.
+        """
         with self._request():
             offering = self._agent(agent)
-            offer, terms = fitting(self._offers(offering, "question", name), arguments)
-            answers = answers_of(offering.mind, offer, terms)
-            results = {each.name for each in offer.parameters if each.output}
-            return [{name: value for name, value in each.items() if name in results} for each in answers]
+            self._tell(offering, literal_of(*self._requested(offering, "tell", belief, arguments)), untell)
 
-    def tell(
-        self, agent: str, name: str, arguments: Mapping[str, Data] | Sequence[Data] = (), untell: bool = False
-    ) -> None:
-        """Tell an agent a belief that it takes from callers, or take it back."""
-        with self._request():
-            offering = self._agent(agent)
-            offer, terms = fitting(self._offers(offering, "tell", name), arguments)
-            self._tell(offering, offer, terms, untell)
-
-    def tell_text(self, agent: str, written: str, untell: bool = False) -> None:
-        """Tell an agent a belief that it takes from callers, as text in the language."""
-        with self._request():
-            offering = self._agent(agent)
-            name, arguments, _ = parsed(written)
-            offer = self._offer(offering, "tell", name, len(arguments))
-            check_terms(offer, arguments)
-            self._tell(offering, offer, arguments, untell)
-
-    def _tell(self, agent: OfferingAgent, offer: Offer, arguments: Sequence[Any], untell: bool) -> None:
-        literal = literal_of(offer, arguments)
+    def _tell(self, agent: OfferingAgent, literal: Term, untell: bool) -> None:
         belief = Annotated(literal, (structure("source", String(str(self.caller))),))
         what, mind = f"{'untells' if untell else 'tells'} {agent.name} {text(literal)}", agent.mind
         self._service.note(self.caller, what)

@@ -76,11 +76,11 @@ def request(session: Session, chance: random.Random) -> Callable[[], object]:
         arguments = [arguments]
     requests: tuple[Callable[[], object], ...] = (
         lambda: session.achieve(agent, name, arguments),
-        lambda: session.achieve_text(agent, words(chance)),
+        lambda: session.achieve(agent, words(chance)),
         lambda: session.ask(agent, words(chance)),
-        lambda: session.query(agent, name, arguments),
+        lambda: session.ask(agent, name, arguments),
         lambda: session.tell(agent, name, arguments, chance.random() < 0.5),
-        lambda: session.tell_text(agent, words(chance)),
+        lambda: session.tell(agent, words(chance)),
         lambda: session.beliefs(agent, name),
         lambda: session.watch(agent, name, ignored),
         lambda: session.goal(words(chance)),

@@ -32,7 +32,7 @@ def test_beliefs_are_watched() -> None:
 def test_questions_are_answered_in_a_view_that_changes_nothing() -> None:
     async def test(lab: Lab) -> None:
         eve = lab.session("eve", "observer")
-        assert eve.query("bob", "double", {"x": 4}) == [{"y": 8}]
+        assert eve.ask("bob", "double", {"x": 4}) == [{"y": 8}]
         assert eve.ask("bob", "double(4, Y)") == [{"Y": 8}]
         assert eve.ask("bob", "battery(L)") == [{"L": 80}]
         with pytest.raises(RequestError, match=r"takes longer than 0\.1 s"):

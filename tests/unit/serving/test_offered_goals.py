@@ -46,7 +46,7 @@ def test_results_are_bindings() -> None:
         goal = lab.session().achieve("bob", "count", [3])
         await goal.wait()
         assert goal.results == {"next": 4}
-        again = lab.session().achieve_text("bob", "count(4, Next)")
+        again = lab.session().achieve("bob", "count(4, Next)")
         await again.wait()
         assert again.results == {"next": 5}
 
@@ -82,9 +82,9 @@ def test_wrong_arguments_name_all_problems() -> None:
         refused(lambda: anna.achieve("bob", "deliver", ["p", "attic"]), "invalid_arguments")
         refused(lambda: anna.achieve("bob", "count", [11]), "invalid_arguments")
         refused(lambda: anna.achieve("bob", "count", [float("nan")]), "invalid_arguments")
-        refused(lambda: anna.achieve_text("bob", "deliver(X, kitchen)"), "invalid_arguments")
-        refused(lambda: anna.achieve_text("bob", "deliver("), "invalid_arguments")
-        refused(lambda: anna.achieve_text("bob", f"deliver({'x' * 3000})"), "too_large")
+        refused(lambda: anna.achieve("bob", "deliver(X, kitchen)"), "invalid_arguments")
+        refused(lambda: anna.achieve("bob", "deliver("), "invalid_arguments")
+        refused(lambda: anna.achieve("bob", f"deliver({'x' * 3000})"), "too_large")
 
     assert run(test) == []
 
@@ -333,8 +333,8 @@ def test_inputs_have_no_variables(written: str) -> None:
 
     async def test(lab: Lab) -> None:
         anna = lab.session()
-        refused(lambda: anna.achieve_text("bob", written), "invalid_arguments")
-        refused(lambda: anna.tell_text("bob", written), "invalid_arguments")
+        refused(lambda: anna.achieve("bob", written), "invalid_arguments")
+        refused(lambda: anna.tell("bob", written), "invalid_arguments")
         assert lab.mas.agent("bob").beliefs == []
 
     run(test, program)

@@ -83,8 +83,8 @@ def test_what_fits_no_offer_or_more_than_one_is_an_error() -> None:
 def test_questions_beliefs_and_tells_of_one_name() -> None:
     async def test(lab: Lab) -> None:
         anna = lab.session()
-        assert anna.query("bob", "far", ["lab"]) == [{"metres": 5}]
-        assert anna.query("bob", "far", {"from": "lab", "to": "hall"}) == [{"metres": 7}]
+        assert anna.ask("bob", "far", ["lab"]) == [{"metres": 5}]
+        assert anna.ask("bob", "far", {"from": "lab", "to": "hall"}) == [{"metres": 7}]
         assert anna.beliefs("bob", "battery/2") == [{"level": 80, "state": "idle"}]
         with pytest.raises(RequestError, match=r"the belief `battery` is `battery/1` or `battery/2`"):
             anna.beliefs("bob", "battery")

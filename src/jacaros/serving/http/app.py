@@ -60,9 +60,9 @@ class Resources:
             self._route(goal, GET=self.goal, DELETE=self.cancel),
             self._route("/goals", GET=self.goals),
             self._route(f"{belief}/{{name:path}}", GET=self.beliefs, POST=self.tell, DELETE=self.tell),
-            self._route(f"{question}/{{name:path}}", POST=self.query),
-            self._route(f"{agent}/goals", POST=self.achieve_text),
-            self._route(belief, POST=self.tell_text, DELETE=self.tell_text),
+            self._route(f"{question}/{{name:path}}", POST=self.ask),
+            self._route(f"{agent}/goals", POST=self.achieve),
+            self._route(belief, POST=self.tell, DELETE=self.tell),
             self._route(question, POST=self.ask),
             self._route("/events", GET=self.events),
             WebSocketRoute("/events", self.socket),
@@ -109,21 +109,12 @@ class Resources:
     # ---- goals
 
     async def achieve(self, request: Request, client: Client) -> Response:
-        """``POST /agents/A/goals/G``: give it a goal."""
-        given = await arguments_of(request)
-        agent, name = request.path_params["agent"], request.path_params["name"]
-        return await self._give(request, client, lambda session: session.achieve(agent, name, given))
+        """``POST /agents/A/goals/G``, or ``/agents/A/goals`` with a text: give it a goal.
 
-    async def achieve_text(self, request: Request, client: Client) -> Response:
-        """``POST /agents/A/goals``: give it a goal as text in the language, ``{"text": "deliver(\\"p1\\", lab)"}``."""
-        written, agent = await _text_of(request), request.path_params["agent"]
-        return await self._give(request, client, lambda session: session.achieve_text(agent, written))
-
-    async def _give(
-        self, request: Request, client: Client, give: Callable[[Session], RequestedGoal]
-    ) -> Response:
-        """Give a goal, and return it when it is accepted or refused."""
-        goal, data = await _waited(request, client, give, SOON)
+        The response comes when the goal is accepted or refused.
+        """
+        agent, name, given = await _requested(request)
+        goal, data = await _waited(request, client, lambda session: session.achieve(agent, name, given), SOON)
         place = f"/goals/{data['id']}"
         if data["state"] == REFUSED_STATE:
             return problem("refused", goal.message, reasons_of(goal.reasons), goal=place)
@@ -160,28 +151,15 @@ class Resources:
         return _json({"beliefs": await client.do(lambda session: session.beliefs(agent, name))})
 
     async def tell(self, request: Request, client: Client) -> Response:
-        """``POST`` and ``DELETE /agents/A/beliefs/B``: tell a belief, or take it back."""
-        given = await arguments_of(request)
-        agent, name = request.path_params["agent"], request.path_params["name"]
+        """``POST`` and ``DELETE /agents/A/beliefs/B``, or ``/agents/A/beliefs``: tell a belief, or take it back."""
+        agent, name, given = await _requested(request)
         await client.do(lambda session: session.tell(agent, name, given, request.method == "DELETE"))
         return Response(status_code=204, headers=HEADERS)
 
-    async def query(self, request: Request, client: Client) -> Response:
-        """``POST /agents/A/questions/Q``: ask it."""
-        given = await arguments_of(request)
-        agent, name = request.path_params["agent"], request.path_params["name"]
-        return _json({"answers": await client.do(lambda session: session.query(agent, name, given))})
-
-    async def tell_text(self, request: Request, client: Client) -> Response:
-        """``POST`` and ``DELETE /agents/A/beliefs``: tell a belief as text in the language, or take it back."""
-        written, agent = await _text_of(request), request.path_params["agent"]
-        await client.do(lambda session: session.tell_text(agent, written, request.method == "DELETE"))
-        return Response(status_code=204, headers=HEADERS)
-
     async def ask(self, request: Request, client: Client) -> Response:
-        """``POST /agents/A/questions``: ask a question as text in the language. The answers name its variables."""
-        written, agent = await _text_of(request), request.path_params["agent"]
-        return _json({"answers": await client.do(lambda session: session.ask(agent, written))})
+        """``POST /agents/A/questions/Q``, or ``/agents/A/questions``: ask it."""
+        agent, name, given = await _requested(request)
+        return _json({"answers": await client.do(lambda session: session.ask(agent, name, given))})
 
     async def why(self, request: Request, client: Client) -> Response:
         """``GET /why?question=…&at=…``: explain the run."""
@@ -343,11 +321,14 @@ def _json(data: Mapping[str, Any], status: int = 200, headers: Mapping[str, str]
     return Response(f"{encoded(data)}\n", status, {**HEADERS, **(headers or {})}, "application/json")
 
 
-async def _text_of(request: Request) -> str:
-    """Return the text in the body ``{"text": …}`` of a request."""
-    match await arguments_of(request):
+async def _requested(request: Request) -> tuple[str, str, dict[str, Any] | None]:
+    """Return the agent, name and arguments of a request; or its text ``{"text": …}`` in the language, and None."""
+    given, path = await arguments_of(request), request.path_params
+    match given:
+        case _ if "name" in path:
+            return path["agent"], path["name"], given
         case {"text": str(written), **others} if not others:
-            return written
+            return path["agent"], written, None
     raise RequestError("invalid_arguments", 'expected {"text": "…"}')
 
 

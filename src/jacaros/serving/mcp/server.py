@@ -104,7 +104,7 @@ class McpServer:
     async def _use(self, ctx: Context, client: Client, tool: AgentOffer, given: Mapping[str, Any]) -> Result:
         agent, offer = tool.agent, tool.offer
         if offer.what == "question":
-            answers = await client.do(lambda session: session.query(agent, offer.key, given))
+            answers = await client.do(lambda session: session.ask(agent, offer.key, given))
             return _told(_json(answers), {"answers": answers})
         if offer.what == "tell":
             await client.do(lambda session: session.tell(agent, offer.key, given))

@@ -253,7 +253,7 @@ class AgentEndpoints:
         return {"answers": json.dumps(answers, ensure_ascii=False)}
 
     def _tell(self, request: Any) -> Fields:
-        self._door.session().tell_text(self._agent, request.belief, request.untell)
+        self._door.session().tell(self._agent, request.belief, untell=request.untell)
         return {}
 
     async def _why(self, request: Any) -> Fields:

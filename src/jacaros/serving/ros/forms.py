@@ -58,12 +58,12 @@ class AchieveForm:
         """Give the agent the goal: as text, or for an action of one goal its arguments as JSON."""
         written = request.goal.strip()
         if not self._name:
-            return session.achieve_text(self._agent, written)
+            return session.achieve(self._agent, written)
         if written and written[0] not in "{[":
             if written.partition("(")[0].strip() != self._name:
                 text = f"expected the goal {self._name}, or its arguments as a JSON object or list"
                 raise RequestError("invalid_arguments", text)
-            return session.achieve_text(self._agent, written)
+            return session.achieve(self._agent, written)
         try:
             arguments = json.loads(written) if written else ()
         except (ValueError, RecursionError) as error:
