@@ -2,13 +2,13 @@
 
 import asyncio
 import time
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from contextlib import ExitStack, suppress
 from math import inf
 from typing import Any
 
 from jacaros.serving.callers import Caller, RequestError
-from jacaros.serving.crossing import Crossing, Outbox
+from jacaros.serving.crossing import Crossing, Outbox, Reply
 from jacaros.serving.goals import RequestedGoal
 from jacaros.serving.mcp.tools import AgentOffer, named_tools, offers_of
 from jacaros.serving.remote import RemoteCaller
@@ -62,25 +62,37 @@ class Client(RemoteCaller):
         Raises:
             RequestError: the goal is not given.
         """
-        pursuit = Pursuit(self, tool, arguments)
-        pursuing = asyncio.create_task(self.wait(pursuit.run))
+        given: list[RequestedGoal] = []
+
+        def begin(session: Session, reply: Reply[dict[str, Any]]) -> None:
+            given.append(goal := session.achieve(tool.agent, tool.offer.key, arguments))
+            goal.then(lambda: reply.give(goal.data()), over=True)
+
+        ending = self.ask(begin)
         until = time.monotonic() + (inf if patience is None else patience)
         shown, last = 0.0, None
         try:
-            await asyncio.sleep(0)  # it begins, even if there is no patience
-            while not pursuing.done() and (rest := until - time.monotonic()) > 0:
-                await asyncio.wait({pursuing}, timeout=patience if report is None else min(LOOK, rest))
-                now = None if report is None else await self.do(lambda _: pursuit.progress())
+            while not ending.done() and (rest := until - time.monotonic()) > 0:
+                await asyncio.wait({ending}, timeout=patience if report is None else min(LOOK, rest))
+                now = None if report is None else await self.do(lambda _: _progress(given))
                 if report is not None and now is not None and now != last:
                     fraction, last = now[0], now
                     shown = max(fraction or 0.0, shown + 1e-6)  # clients expect it to increase
                     await report(shown, None if fraction is None else 1.0, now[1] or None)
-            pursuit.detached = not pursuing.done()
-            # A later task than `run`: the goal has been given, or the request had no effect.
-            found = await self.wait(pursuit.data) if pursuit.detached else None
-            return found or await pursuing
+            found = None if ending.done() else await self.do(lambda _: given[0].data() if given else None)
+            return found or await ending
+        except asyncio.CancelledError:
+            if not self.left:
+                with suppress(RequestError):  # the run has ended
+                    self._crossing.post(lambda: self._cancel(given))
+            raise
         finally:
-            pursuing.cancel()
+            ending.cancel()
+
+    def _cancel(self, given: Sequence[RequestedGoal]) -> None:
+        with suppress(RequestError):  # the run has ended
+            for goal in given:
+                self._opened().cancel(goal.id)
 
     async def watch(self, beliefs: Mapping[str, tuple[str, str]], changed: Outbox[str]) -> Callable[[], None]:
         """Put the address of each belief that changes into an outbox, and "" when agents start or end.
@@ -122,41 +134,9 @@ def _watch(
         return ends.pop_all().close
 
 
-class Pursuit:
-    """A goal that a request waits for. All methods belong to the loop of the run.
-
-    Args:
-        client: who gives it.
-        tool: the goal.
-        arguments: its arguments.
-
-    Attributes:
-        detached: whether the goal continues when the request ends.
-    """
-
-    def __init__(self, client: Client, tool: AgentOffer, arguments: Mapping[str, Any]) -> None:
-        self._client, self._tool, self._arguments = client, tool, arguments
-        self.detached = False
-        self._goal: RequestedGoal | None = None
-
-    async def run(self, session: Session) -> dict[str, Any]:
-        """Give the goal, and wait for its end. Return its data."""
-        goal = self._goal = session.achieve(self._tool.agent, self._tool.offer.key, self._arguments)
-        try:
-            await goal.wait()
-        except asyncio.CancelledError:
-            if not (self.detached or self._client.left):
-                session.cancel(goal.id)
-            raise
-        return goal.data()
-
-    async def data(self, _: Session) -> dict[str, Any] | None:
-        """Return the data of the goal; None if it has not been given."""
-        return None if self._goal is None else self._goal.data()
-
-    def progress(self) -> tuple[float | None, str] | None:
-        """Return how far the goal is, and what the agent does; None before it is given, and after its end."""
-        goal = self._goal
-        if goal is None or goal.over:
-            return None
-        return goal.progress, goal.note or goal.doing() or goal.state
+def _progress(given: Sequence[RequestedGoal]) -> tuple[float | None, str] | None:
+    """Return how far a goal is, and what the agent does; None before it is given, and after its end."""
+    for goal in given:
+        if not goal.over:
+            return goal.progress, goal.note or goal.doing() or goal.state
+    return None
