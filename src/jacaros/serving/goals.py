@@ -47,7 +47,7 @@ class RequestedGoal:
         note: what the agent says about its progress.
         message: why it was refused or has failed, in words.
         reasons: why, as terms.
-        results: the results, by name.
+        results: the results, by name; without those that the plan has left open.
         watcher: called after each change; for doors that need no data of it.
         began: when it was given, in seconds of the run's clock since the Unix epoch.
         ended: when it ended, or None.
@@ -245,7 +245,8 @@ class RequestedGoal:
             return
         if watched.achieved:
             given = named(self.offer, [resolve(each) for each in watched.arguments])
-            self.results = {each.name: given[each.name] for each in self.offer.parameters if each.output}
+            outputs = [each.name for each in self.offer.parameters if each.output]
+            self.results = {name: given[name] for name in outputs if given[name] is not None}
             self.accept()
             self._finish(ACHIEVED)
             return

@@ -3,9 +3,11 @@
 import asyncio
 from typing import Any
 
+import jsonschema
 import pytest
 from serving_lab import Lab, run
 
+from jacaros.serving.arguments import results_schema
 from jacaros.serving.callers import RequestError
 from jacaros.serving.service import MOST_ALIVE, Event
 
@@ -51,6 +53,16 @@ def test_results_are_bindings() -> None:
         assert again.results == {"next": 5}
 
     run(test)
+
+
+def test_results_that_a_plan_leaves_open_are_left_out() -> None:
+    async def test(lab: Lab) -> None:
+        goal = lab.session().achieve("bob", "half")
+        await goal.wait()
+        assert (goal.state, goal.results) == ("achieved", {"x": 1})
+        jsonschema.validate(goal.results, results_schema(goal.offer))
+
+    run(test, "{ offer(goal, half(x(out(number)), y(out(number)))) } +!half(1, _).")
 
 
 def test_only_what_is_offered_to_a_role_is_reachable() -> None:

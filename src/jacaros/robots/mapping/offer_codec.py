@@ -31,15 +31,15 @@ class OfferCodec:
 
     def result(self, values: Mapping[str, Any], now: float) -> dict[str, Any]:
         """Return the fields of a result. Raises `WrongValue`."""
-        return self._result([values[each] for each in self.part.result.names], now)
+        return self._result([values.get(each) for each in self.part.result.names], now)
 
     def feedback(self, values: Mapping[str, Any], now: float) -> dict[str, Any]:
         """Return the fields of feedback. Raises `WrongValue`."""
-        return self._feedback([values[each] for each in self.part.feedback.names], now)
+        return self._feedback([values.get(each) for each in self.part.feedback.names], now)
 
     def message(self, values: Mapping[str, Any], now: float) -> dict[str, Any]:
         """Return the fields of a belief's message. Raises `WrongValue`."""
-        return self._message([values[each] for each in self.part.fields.names], now)
+        return self._message([values.get(each) for each in self.part.fields.names], now)
 
 
 def _plain(value: object) -> object:

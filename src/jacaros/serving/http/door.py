@@ -16,6 +16,7 @@ import uvicorn
 from starlette.types import ASGIApp
 
 from jacaros.runtime.errors import UsageError
+from jacaros.runtime.files.texts import is_worth_a_line
 from jacaros.runtime.mas.system import System
 from jacaros.serving import running
 from jacaros.serving.access import LOOPBACK, Hosts, listening_socket
@@ -105,11 +106,11 @@ class HttpDoor:
             self._file = None
 
     def _failed(self, error: Exception) -> None:
-        """Log a defect, on its first, 10th and 100th occurrence."""
+        """Log a defect, on its 1st, 10th, 100th, … occurrence."""
         told = f"{type(error).__name__}: {error}"
         if len(self._defects) < MOST_DEFECTS or told in self._defects:
             self._defects[told] += 1
-        if (count := self._defects[told]) in (1, 10, 100):
+        if (count := self._defects[told]) and is_worth_a_line(count):
             times = f" ({count} times)" if count > 1 else ""
             text = f"internal error: HTTP server: {told}{times}; please file an issue"
             trace = "\n" + "".join(format_exception(error)).rstrip() if count == 1 else ""

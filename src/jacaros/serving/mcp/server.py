@@ -204,8 +204,8 @@ def _belief(uri: str) -> tuple[str, str]:
 
 def _outcome(offer: Offer, goal: Mapping[str, Any]) -> Result:
     """Return what came of a goal, for the model."""
-    results = {name: value for name, value in goal["results"].items() if value is not None}
-    structured = results if any(each.output for each in offer.parameters) else None
+    results = goal["results"]
+    structured = results if len(offer.inputs) < len(offer.parameters) else None
     if goal["state"] == ACHIEVED:
         return _told(_json(results) if results else f"achieved {goal['written']}", structured)
     if goal["state"] in OVER:

@@ -57,6 +57,7 @@ class RosDoor:
 
     Attributes:
         active: whether goals are accepted.
+        now: returns the time of the run.
     """
 
     def __init__(
@@ -70,7 +71,8 @@ class RosDoor:
         self._codecs, self._roles = dict(codecs or {}), frozenset(roles)
         self._service = service_of(system)
         self._sessions: dict[str, Session] = {}
-        self._pursuits = Pursuits(system.clock.now, self.warn)
+        self.now = system.clock.now
+        self._pursuits = Pursuits(self.now, self.warn)
         self._looking: Timer | None = None
         self._agents: dict[str, AgentEndpoints] = {}
         for name in self.session(ANONYMOUS).agents():
@@ -146,10 +148,6 @@ class RosDoor:
         if self._pursuits:
             self._look_later()
 
-    def mapped(self, agent: str, codec: OfferCodec) -> GoalForm:
-        """Return the form of goals in the messages that a mapping file names."""
-        return MappedForm(agent, codec, self._system.clock.now)
-
     def serve(self, name: str, kind: str, answer: Callable[[Any], Any]) -> Callable[[], None]:
         """Offer a service of the package ``jacaros_interfaces``. Return a function that withdraws it."""
 
@@ -165,8 +163,7 @@ class RosDoor:
 
     def publish(self, topic: str, agent: str, offer: Offer, codec: OfferCodec | None) -> Callable[[], None]:
         """Publish a belief as a latched topic. Return a function that withdraws it."""
-        now = self._system.clock.now
-        fields = facts_as_json if codec is None else newest_fact(codec, now)
+        fields = facts_as_json if codec is None else newest_fact(codec, self.now)
         type_name = STRING if codec is None else codec.part.type_name.text
         publisher = self._backend.publisher(topic, type_name, LATCHED)
 
@@ -239,9 +236,9 @@ class AgentEndpoints:
 
     def _goal(self, offer: Offer) -> Callable[[], None]:
         codec = self._door.codec_of(offer)
-        form = (
-            AchieveForm(self._agent, offer.name) if codec is None else self._door.mapped(self._agent, codec)
-        )
+        form: GoalForm = AchieveForm(self._agent, offer.name)
+        if codec is not None:
+            form = MappedForm(self._agent, codec, self._door.now)
         return self._door.serve_goals(self._name(offer, codec), form)
 
     def _belief(self, offer: Offer) -> Callable[[], None]:

@@ -2,13 +2,14 @@
 
 import json
 from collections.abc import Callable, Mapping
-from typing import Any, Protocol
+from typing import Any
 
 from jacaros.agents.language.offers import Offer
 from jacaros.robots.mapping.decoding import Unshowable
 from jacaros.robots.mapping.encoding import WrongValue
 from jacaros.robots.mapping.offer_codec import OfferCodec
 from jacaros.serving.agent import Facts
+from jacaros.serving.arguments import reasons_of
 from jacaros.serving.callers import RequestError
 from jacaros.serving.goals import RequestedGoal
 from jacaros.serving.service import Session
@@ -17,28 +18,6 @@ UNKNOWN = -1.0
 """Progress of a goal whose agent says nothing about it."""
 Fields = dict[str, Any]
 """Fields of a message."""
-
-
-class GoalForm(Protocol):
-    """How goals, feedback and results are written in the messages of an action.
-
-    Attributes:
-        type_name: type of the action.
-    """
-
-    type_name: str
-
-    def give(self, session: Session, request: Any) -> RequestedGoal:
-        """Give the agent the goal of a message. Raises `RequestError`."""
-
-    def feedback(self, doing: str, progress: float | None, note: str) -> Fields:
-        """Return the fields of feedback."""
-
-    def result(self, goal: RequestedGoal) -> Fields | None:
-        """Return the fields of the result; None for the defaults."""
-
-    def refusal(self, error: RequestError) -> Fields | None:
-        """Return the fields of the result of a request without effect; None for the defaults."""
 
 
 class AchieveForm:
@@ -76,14 +55,8 @@ class AchieveForm:
 
     def result(self, goal: RequestedGoal) -> Fields:
         """Return everything about the end of the goal."""
-        data = goal.data()
-        results = json.dumps(data["results"], ensure_ascii=False)
-        return {
-            "state": goal.state,
-            "results": results,
-            "message": goal.message,
-            "reasons": data["reasons"],
-        }
+        results, reasons = json.dumps(goal.results, ensure_ascii=False), reasons_of(goal.reasons)
+        return {"state": goal.state, "results": results, "message": goal.message, "reasons": reasons}
 
     def refusal(self, error: RequestError) -> Fields:
         """Return why the request had no effect."""
@@ -124,6 +97,10 @@ class MappedForm:
 
     def refusal(self, error: RequestError) -> None:
         """Return the defaults: the text of the outcome says why."""
+
+
+GoalForm = AchieveForm | MappedForm
+"""How goals, feedback and results are written in the messages of an action."""
 
 
 def facts_as_json(facts: Facts) -> Fields:
