@@ -10,7 +10,7 @@ finalized       the run ends
 ==============  ===============================================================
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -95,17 +95,9 @@ class Lifecycle:
         for name, kind, answer in (
             ("change_state", "ChangeState", self._change),
             ("get_state", "GetState", lambda _: {"current_state": _state(self.state)}),
-            (
-                "get_available_states",
-                "GetAvailableStates",
-                lambda _: {"available_states": list(map(_state, LABELS))},
-            ),
-            (
-                "get_available_transitions",
-                "GetAvailableTransitions",
-                lambda _: self._described(self._possible()),
-            ),
-            ("get_transition_graph", "GetAvailableTransitions", lambda _: self._described(list(TRANSITIONS))),
+            ("get_available_states", "GetAvailableStates", lambda _: _STATES),
+            ("get_available_transitions", "GetAvailableTransitions", lambda _: _available(self._possible())),
+            ("get_transition_graph", "GetAvailableTransitions", lambda _: _available(TRANSITIONS)),
         ):
             backend.service(f"~/{name}", _SERVICES + kind, answer)
 
@@ -117,50 +109,30 @@ class Lifecycle:
     def _possible(self) -> list[Transition]:
         return [each for each in TRANSITIONS if each.start == self.state]
 
-    def _described(self, transitions: list[Transition]) -> Fields:
-        return {
-            "available_transitions": [
-                {
-                    "transition": {"id": each.number, "label": each.label},
-                    "start_state": _state(each.start),
-                    "goal_state": _state(each.goal),
-                }
-                for each in transitions
-            ]
-        }
-
     def _change(self, request: Any) -> Fields:
         asked = request.transition
-        found = [
-            each
-            for each in self._possible()
-            if (asked.label == each.label if asked.label else asked.id == each.number)
-        ]
-        return {"success": bool(found) and self.change(found[0])}
+        for each in self._possible():
+            if asked.label == each.label if asked.label else asked.id == each.number:
+                return {"success": self.change(each)}
+        return {"success": False}
 
     def change(self, transition: Transition) -> bool:
         """Make a transition. Return whether it succeeded; otherwise the state stays."""
-        self._tell(transition.number, transition.label, transition.start, transition.during)
+        number, during = transition.number, transition.during
+        self._tell(number, transition.label, transition.start, during)
         try:
             getattr(self, f"_{transition.label}")()
         except Exception as error:  # the node stays manageable; its manager sees the failure
             self._system.console.log(f"[ros] error: {transition.label} failed: {error}", "error")
-            self._tell(
-                10 * transition.number + FAILURE, "transition_failure", transition.during, transition.start
-            )
+            self._tell(10 * number + FAILURE, "transition_failure", during, transition.start)
             return False
         self.state = transition.goal
-        self._tell(10 * transition.number + SUCCESS, "transition_success", transition.during, transition.goal)
+        self._tell(10 * number + SUCCESS, "transition_success", during, transition.goal)
         self._system.console.log(f"[ros] note: {LABELS[transition.goal]}, by `{transition.label}`")
         return True
 
     def _tell(self, number: int, label: str, start: int, goal: int) -> None:
-        now = int(self._system.clock.now() * 1e9)
-        fields = {
-            "transition": {"id": number, "label": label},
-            "start_state": _state(start),
-            "goal_state": _state(goal),
-        }
+        now, fields = int(self._system.clock.now() * 1e9), _described(number, label, start, goal)
         self._events.publish(self._events.message(timestamp=now, **fields))
 
     def _configure(self) -> None:
@@ -218,3 +190,16 @@ def _hold(host: AgentHost) -> None:
 
 def _state(number: int) -> Fields:
     return {"id": number, "label": LABELS[number]}
+
+
+def _described(number: int, label: str, start: int, goal: int) -> Fields:
+    transition = {"id": number, "label": label}
+    return {"transition": transition, "start_state": _state(start), "goal_state": _state(goal)}
+
+
+def _available(transitions: Iterable[Transition]) -> Fields:
+    found = [_described(each.number, each.label, each.start, each.goal) for each in transitions]
+    return {"available_transitions": found}
+
+
+_STATES: Final[Fields] = {"available_states": [_state(each) for each in LABELS]}
