@@ -34,8 +34,9 @@ needs(Room, Percent) :- place(Room, X, Y, _) & Percent = math.ceil(2.5 * (2.9 + 
 
 +!drive_there(X, Y, _) <- driveTo(X, Y).
 
-/* Deliveries, which are more urgent than the patrol. The first two plans do not act, so the goal is refused, not failed. */
+/* Deliveries, which are more urgent than the patrol. The first plans do not act, so the goal is refused, not failed. */
 
++!deliver(_, _, _) : not battery(_) <- .refuse(starting).  // a caller that comes before the robot is ready
 +!deliver(_, Room, _) : closed(Room)[source(Who)] <- .refuse(closed(Room, Who)).
 +!deliver(_, Room, _) : needs(Room, Percent) & battery(Left) & reserve(Least) & Left - Percent < Least
   <- .refuse(battery(Left, needs(Percent + Least))).

@@ -21,7 +21,7 @@ def main() -> int:
     ended = sent.result().get_result_async()
     rclpy.spin_until_future_complete(node, ended)
     result = ended.result().result
-    print(result.state, result.results or result.message)
+    print(result.state, result.results if result.state == "achieved" else result.message)
     return 0 if result.state == "achieved" else 1
 
 
