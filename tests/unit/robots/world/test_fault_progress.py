@@ -116,7 +116,7 @@ def test_an_effect_is_logged_once_for_each_start() -> None:
     states = [each.data["state"] for each in world.log if each.kind == "fault"]
     assert states == ["begins", "acts", "ends"] * 2
     assert math.isinf(world.faults.next)
-    assert world.faults.next > 0.0, "steps of the world do not look for effects any more"
+    assert world.faults.next > 0.0, "no step of the world looks for effects"
 
 
 @pytest.mark.parametrize(("fault", "has_effect"), [("to: {x: 0.04}", False), ("to: {x: 0.06}", True)])

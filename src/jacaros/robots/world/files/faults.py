@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from jacaros.robots.plane.pose import Pose
-from jacaros.robots.world.data.faults import KINDS, Fault, FaultKind, Progress
+from jacaros.robots.world.data.faults import KINDS, Fault, FaultKind
 from jacaros.robots.world.data.robot import RobotDescription, absolute
 from jacaros.robots.world.data.world import PersonDescription, WorldDescription, WorldError
 from jacaros.robots.world.files.floor import place_problem, read_path
@@ -115,7 +115,8 @@ def _fault(key: YamlNode, node: YamlNode, world: WorldDescription | None) -> Fau
         ),
     )
     if "after" in entries:
-        fault = replace(fault, after=_one_progress(entries["after"], replace(fault.after, robot=whose)))
+        _check_progress(entries["after"])
+        fault = replace(fault, after=replace(fault.after, robot=whose))
     if word == "missed_grasp" and robot and not robot.gripper_reach:
         node.wrong(
             f"the robot '{robot.name}' has no gripper", "add 'gripper: true' to it, or remove the fault"
@@ -136,14 +137,11 @@ def _check_one_of(entries: Mapping[str, YamlNode], one: str, other: str) -> None
         entries[other].wrong(f"'{one}' and '{other}' exclude each other", f"remove '{one}' or '{other}'")
 
 
-def _one_progress(node: YamlNode, progress: Progress) -> Progress:
-    """Check that exactly one kind of progress is given."""
-    count = len(node.value) if isinstance(node.value, dict) else 1
-    if count != 1:
-        node.wrong(
-            f"'after' has {count} keys, but must have one", "write one of 'metres', 'battery' and 'tasks'"
-        )
-    return progress
+def _check_progress(node: YamlNode) -> None:
+    keys = node.value if isinstance(node.value, dict) else {"": None}
+    if len(keys) != 1:
+        help = "write one of 'metres', 'battery' and 'tasks'"
+        node.wrong(f"'after' has {len(keys)} keys, but must have one", help)
 
 
 def _robot(

@@ -4,7 +4,6 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from jacaros.robots.world.data.faults import MESSAGES, Fault, Progress
@@ -29,7 +28,7 @@ class Effect(NamedTuple):
 
     undo: Undo | None = None
     felt: bool | Felt = False
-    data: Mapping[str, Any] = MappingProxyType({})
+    data: Mapping[str, Any] | None = None
 
 
 @dataclass(slots=True)
@@ -178,7 +177,7 @@ class Faults:
             self._undo[name] = effect.undo
             if fault.lasts is not None:
                 self._ends[name] = self._now() + fault.lasts
-        self._tell(fault, "begins", **effect.data)
+        self._tell(fault, "begins", **(effect.data or {}))
         self._unfelt[name] = None if isinstance(effect.felt, bool) else effect.felt
         if effect.felt is True:
             self.acts(name)

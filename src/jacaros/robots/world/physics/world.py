@@ -22,6 +22,7 @@ from jacaros.robots.world.data.world import Dock, PersonDescription, WorldDescri
 from jacaros.robots.world.files.faults import read_faults
 from jacaros.robots.world.files.world import load_world, read_world
 from jacaros.robots.world.physics.dirt import Cleaning
+from jacaros.robots.world.physics.effects import ON_ROBOT, near, without_current
 from jacaros.robots.world.physics.faults import Effect, Faults
 from jacaros.robots.world.physics.people import People, Person
 from jacaros.robots.world.physics.ranging import Laser
@@ -36,12 +37,10 @@ STEP = 0.02
 SAMPLES_PER_SECOND = 10
 DOOR_ROOM = 0.25
 """Metres that a robot must be away from a door for it to close."""
-NEAR = 1.0
-"""Metres from the centre of a robot at which a closed door or a person affects it."""
 CARRIED = 0.05
-"""Metres from which on a robot was carried somewhere else."""
+"""Metres by which a robot must be carried to be affected."""
 _DRAWS = 100
-"""Places that are tried for a kidnapped robot."""
+"""Maximum number of places that are tried for a kidnapped robot."""
 
 
 class World:
@@ -429,28 +428,11 @@ class World:
         Raises:
             UsageError: it cannot happen now.
         """
-        seed = self.description.seed
+        if fault.kind in ON_ROBOT:
+            return ON_ROBOT[fault.kind](self.robot(fault.robot), fault, self.description.seed)
         match fault.kind:
-            case "wheel_slip":
-                robot, draw = self.robot(fault.robot), fault.draw(seed, "slip")
-                robot.grip = lambda: max(0.0, 1.0 - 2.0 * fault.share * draw())
-                return Effect(
-                    partial(setattr, robot, "grip", None), lambda: robot.rolling and fault.share > 0.0
-                )
-            case "blocked_wheel":
-                robot = self.robot(fault.robot)
-                robot.blocked_wheel = fault.wheel
-                return Effect(partial(setattr, robot, "blocked_wheel", ""), lambda: robot.rolling)
             case "kidnapped_robot":
                 return self._kidnap(self.robot(fault.robot), fault)
-            case "battery_drop":
-                battery = self.robot(fault.robot).battery
-                before, battery.level = battery.level, min(battery.level, fault.level)
-                return Effect(felt=before - battery.level >= 1.0)
-            case "lost_localisation":
-                robot = self.robot(fault.robot)
-                robot.misled = fault.pose
-                return Effect(felt=lambda: robot.misled is None)
             case "dead_dock" | "dirty_contact" | "wrong_dock":
                 return self._spoil_dock(fault)
             case "closed_door":
@@ -458,17 +440,13 @@ class World:
             case "stuck_door":
                 self.stuck_doors[fault.door] = self.faults.chance(fault)
                 return Effect(partial(self.stuck_doors.pop, fault.door, None))
-            case "person" | "person_in_the_way":
-                person = self.add_person(self._person_of(fault))
-                return Effect(
-                    partial(self.remove_person, fault.name),
-                    lambda: any(
-                        distance((each.x, each.y), (person.x, person.y)) <= NEAR for each in self._row
-                    ),
-                )
-        robot = self.robot(fault.robot)
-        robot.misses = self.faults.chance(fault)
-        return Effect(partial(setattr, robot, "misses", None))
+            case "missed_grasp":
+                robot = self.robot(fault.robot)
+                robot.misses = self.faults.chance(fault)
+                return Effect(partial(setattr, robot, "misses", None))
+        person = self.add_person(self._person_of(fault))
+        met = near(self._row, lambda x, y: distance((x, y), (person.x, person.y)))
+        return Effect(partial(self.remove_person, fault.name), met)
 
     def _shut_door(self, name: str) -> Effect:
         if not self.doors[name]:
@@ -477,10 +455,7 @@ class World:
         if why is not None:
             raise UsageError(why)
         shut = next(door.segment for door in self.description.doors if door.name == name)
-        return Effect(
-            partial(self.move_door, name, opened=True),
-            lambda: any(shut.distance(robot.x, robot.y) <= NEAR for robot in self._row),
-        )
+        return Effect(partial(self.move_door, name, opened=True), near(self._row, shut.distance))
 
     def _kidnap(self, robot: Robot, fault: Fault) -> Effect:
         before = (robot.x, robot.y)
@@ -515,10 +490,7 @@ class World:
             self.docks = tuple(dock for dock in self.docks if dock is not wrong)
             del self.currents[fault.name]
 
-        def felt() -> bool:
-            return any(each.dock and each.dock.name == spoilt and not each.fed for each in self._row)
-
-        return Effect(end, felt)
+        return Effect(end, without_current(self._row, spoilt))
 
     def _person_of(self, fault: Fault) -> PersonDescription:
         assert fault.person is not None
