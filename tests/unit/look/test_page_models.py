@@ -79,3 +79,9 @@ def test_models_of_a_long_run_stay_small(tmp_path: Path) -> None:
 def test_a_number_that_is_rounded_to_zero_has_no_minus(tmp_path: Path) -> None:
     shown = "[decimals(-0.004, 2), decimals(-0, 1), decimals(-0.006, 2), decimals(1.005, 1)]"
     assert evaluated(tmp_path, "elements", "decimals", shown) == ["0.00", "0.0", "-0.01", "1.0"]
+
+
+@needs_chromium
+def test_a_fault_has_one_mark(tmp_path: Path) -> None:
+    sorts = '["begins", "acts", "ends", "refused"].map((state) => sortOf("fault", { state }) ?? "none")'
+    assert evaluated(tmp_path, "happenings", "sortOf", sorts) == ["failure", "none", "none", "failure"]

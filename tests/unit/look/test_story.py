@@ -8,6 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from jacaros.look.page.recorder import Recorder
+from jacaros.look.records.lasting import Lasting
 from jacaros.look.records.records import Record
 from jacaros.look.why.story import MOST, story_of, story_text
 from jacaros.look.why.tales import StoryLine, reason
@@ -187,3 +188,10 @@ def test_unknown_kinds_and_levels_of_newer_versions_are_skipped() -> None:
         (1.0, "log", {"level": "odd", "text": "hm"}),
     ]
     assert texts([*run, (2.0, "ended", {"code": 0})]) == ["the run ended with exit code 0"]
+
+
+def test_a_fault_lasts_until_it_ends_whether_it_acts_or_not() -> None:
+    lasting: Lasting[str] = Lasting()
+    for state, kept in (("begins", ["begins"]), ("acts", ["acts"]), ("ends", [])):
+        lasting.take("fault", {"fault": "ice", "state": state}, state)
+        assert [*lasting] == kept
