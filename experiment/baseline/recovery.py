@@ -64,7 +64,6 @@ class RecoveryNode(py_trees.composites.Composite):
         if status == Status.RUNNING:
             self.status = status
         else:
-            self.current_child = self.children[0]  # the tip is what failed, not its recovery
             self.stop(status)
         yield self
 
@@ -113,16 +112,23 @@ class RoundRobin(py_trees.composites.Composite):
         super().stop(new_status)
 
 
-class Goal(py_trees.decorators.Decorator):
-    """Runs a tree for one goal. It begins with halted nodes: `bt_navigator` halts its tree after each goal."""
+class NavigateWithRecovery(py_trees.behaviour.Behaviour):
+    """A goal for `bt_navigator`: runs a tree of its own, anew for each goal, as Nav2 halts its tree after each."""
+
+    def __init__(self, name, create_tree):
+        super().__init__(name)
+        self.create_tree = create_tree
 
     def initialise(self):
-        for node in self.decorated.iterate():
-            if isinstance(node, RoundRobin):
-                node.turn = 0
+        self.tree = self.create_tree()
 
     def update(self):
-        return self.decorated.status
+        self.tree.tick_once()
+        return self.tree.status
+
+    def terminate(self, new_status):
+        if self.status == Status.RUNNING and new_status == Status.INVALID:
+            self.tree.stop(new_status)
 
 
 class WouldARecoveryHelp(py_trees.behaviour.Behaviour):
@@ -197,10 +203,13 @@ class Recovering:
         return super().create_root()
 
     def create_way(self, name, place):
-        way = super().create_way(name, place)
+        way = super().create_way
+        return NavigateWithRecovery(name, lambda: self.create_tree(way(name, place)))
+
+    def create_tree(self, way):
         navigate = RecoveryNode("NavigateToPose", 1, way, self.create_context(way))
         recovery = sequence("Recovery", [would_any_help(way), self.create_recovery_actions()])
-        return Goal(f"{name} with recovery", RecoveryNode("NavigateRecovery", RETRIES, navigate, recovery))
+        return RecoveryNode("NavigateRecovery", RETRIES, navigate, recovery)
 
     def create_context(self, way):
         planner = sequence("Planner", [would_a_planner_help(way), self.clear("global")])

@@ -98,13 +98,6 @@ def test_a_halted_recovery_node_halts_what_runs_and_begins_with_its_child(nodes:
     assert ticks(node, log, 1) == [(FAILURE, "child recovery child")]
 
 
-def test_the_tip_of_a_failed_recovery_node_is_its_child(nodes: ModuleType) -> None:
-    for retries, recovery in ((0, "s"), (1, "s"), (1, "f")):
-        node, log = recovery_node(nodes, retries, "f", recovery)
-        ticks(node, log, 1)
-        assert node.tip().name == "child"
-
-
 def round_robin(nodes: ModuleType, *scripts: str) -> tuple[Any, list[str]]:
     log: list[str] = []
     children = [Scripted(str(number), log, script) for number, script in enumerate(scripts, 1)]
@@ -148,12 +141,13 @@ def test_a_round_robin_keeps_its_turn_under_a_sequence_that_begins_anew(nodes: M
     assert [ticked for _, ticked in ticks(sequence, log, 4)] == expected
 
 
-def test_a_new_goal_begins_with_the_first_recovery(nodes: ModuleType) -> None:
-    actions, log = round_robin(nodes, "s", "s", "s")
-    child = Scripted("child", log, "fsfrffs")
-    goal = nodes.Goal("goal", nodes.RecoveryNode("node", 6, child, actions))
-    assert ticks(goal, log, 2) == [(SUCCESS, "child 1 child"), (RUNNING, "child 1 child")]
-    assert ticks(goal, log, 1) == [(SUCCESS, "child 2 child 3 child")]
+def test_each_goal_has_a_tree_of_its_own_which_halts_with_it(nodes: ModuleType) -> None:
+    log: list[str] = []
+    scripts = iter(("rs", "f", "r"))
+    goal = nodes.NavigateWithRecovery("goal", lambda: Scripted("tree", log, next(scripts)))
+    assert [status for status, _ in ticks(goal, log, 4)] == [RUNNING, SUCCESS, FAILURE, RUNNING]
+    goal.stop(INVALID)
+    assert log == ["tree", "tree halted"]
 
 
 @pytest.mark.parametrize(
