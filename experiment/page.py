@@ -1,113 +1,120 @@
-"""Fills the page of the experiment: the words of ``page.md`` with the tables that were measured."""
+"""Fills the page of the experiment: the words of ``page.md`` with the tables and sentences that the record gives."""
 
 import re
 import textwrap
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping
 from functools import partial
 
 import change_requests
-import comparison
+import figures
+import sentences
 import sizes
-import success
-from counting import Group, ProgramMetrics, Table, as_markdown
-from disturbances import held_out, is_further
-from disturbed_runs import AGENTS, BASELINE, OVER_NAV2, PATIENT, Outcome
+import tables
+from counting import Table, as_markdown
+from family import AGENTS, BASELINE, DONE, SILENT, Runs, compared, ends, family, of_protocol, runs_of
 from scenarios import FOLDER, SCENARIOS
 from workshop.published import size_table
 
 MARK = re.compile(r"<!-- (\w+) -->")
 FRONT_PAGE_WIDTH, PAGE_WIDTH = 140, 150
-SENTENCES = (
-    comparison.significance,
-    comparison.fewer,
-    comparison.equal_policy,
-    comparison.after_the_end,
-    comparison.alike,
-    comparison.late_runs,
-)
-"""What the figures decide, by the names of the functions."""
+
+Texts = Mapping[str, Callable[[], str]]
+Tables = Mapping[str, Callable[[], Table]]
 
 
-def page(record: Sequence[Outcome]) -> str:
-    """The text of ``docs/experiment.md``, from all recorded runs."""
-    outcomes, further = split(record)
-    tables = all_tables(outcomes) | further_tables(further) | halves_tables(record)
-    words = (FOLDER / "page.md").read_text(encoding="utf-8")
-    sentences = {each.__name__: each(outcomes) for each in SENTENCES}
+def text(record: Runs, before: Runs = (), real: Runs = ()) -> str:
+    """Return the text of ``docs/experiment.md``.
+
+    Args:
+        record: all runs on the virtual clock.
+        before: runs of an earlier version of the agents, as the side ``agents before``.
+        real: runs on real ROS 2.
+    """
+    outcomes = [*record, *before]
+    found = _tables(outcomes)
+    said = _sentences(outcomes, real)
 
     def filled(line: str) -> str:
-        found = MARK.findall(line)
-        if not any(mark in sentences for mark in found):
-            return MARK.sub(lambda mark: as_markdown(tables[mark[1]]()), line)
-        text = MARK.sub(lambda mark: sentences[mark[1]], line)
-        return textwrap.fill(text, PAGE_WIDTH, subsequent_indent="  " if line.startswith("- ") else "")
+        marks = MARK.findall(line)
+        if marks and marks[0] in found:
+            return as_markdown(found[marks[0]]())
+        if marks:
+            words = MARK.sub(lambda mark: said[mark[1]](), line)
+            return words if words.startswith("|") else _wrapped(words)
+        return line
 
+    words = (FOLDER / "page.md").read_text(encoding="utf-8")
     return "\n".join(map(filled, words.split("\n")))
 
 
-def split(record: Sequence[Outcome]) -> tuple[Sequence[Outcome], Sequence[Outcome]]:
-    """The runs of the comparison, and those with the further kinds of disturbances, without the seeds held out."""
-    seen = [each for each in record if not held_out(each.job.seed)]
-    further = [each for each in seen if is_further(each.job.seed)]
-    return [each for each in seen if not is_further(each.job.seed)], further
-
-
-def halves_tables(record: Sequence[Outcome]) -> dict[str, Callable[[], Table]]:
-    """The tables of the seeds to tune with beside those held out."""
-    further = [each for each in record if is_further(each.job.seed)]
+def pictures(record: Runs) -> dict[str, str]:
+    """Return the pictures of the page, by the names of their files in ``docs/images``."""
+    outcomes = of_protocol(record)
     return {
-        "halves": lambda: success.halves_table([each for each in record if not is_further(each.job.seed)]),
-        "further_halves": lambda: success.halves_table(further),
+        "experiment_differences.svg": figures.differences(family(outcomes)),
+        "experiment_doses.svg": figures.responses(outcomes),
+        "experiment_outcomes.svg": figures.outcomes_by_side(outcomes, tables.WHOLE, tuple(SCENARIOS)),
     }
 
 
-def further_tables(further: Sequence[Outcome]) -> dict[str, Callable[[], Table]]:
-    """The tables of the runs with the further kinds of disturbances."""
-    return {
-        "further": lambda: success.further_table(further),
-        "further_outcomes": lambda: success.outcome_table(further),
-    }
+def summary(record: Runs) -> str:
+    """Return the table of the front page, and its conditions; where the agents do worst comes first."""
+    outcomes = of_protocol(record)
+    found = {each: compared(outcomes, each, DONE) for each in SCENARIOS}
+    rows = []
+    for name in sorted(SCENARIOS, key=lambda each: found[each].pairs.difference):
+        pair = (AGENTS, BASELINE)
+        lines = " / ".join(str(sizes.size_of(name, side).program.code_lines) for side in pair)
+        cells = (ends(runs_of(outcomes, name, side)) for side in pair)
+        silent = compared(outcomes, name, SILENT)
+        rows.append((name.replace("_", " "), *cells, found[name].text, silent.text, lines))
+    header = ("scenario", "agents", "Python", "done: difference", "silent: difference", "code lines")
+    table = as_markdown(Table("Summary", header, tuple(rows)))
+    return f"{table}\n\n{textwrap.fill(sentences.conditions(record), FRONT_PAGE_WIDTH)}"
 
 
-def all_tables(outcomes: Sequence[Outcome]) -> dict[str, Callable[[], Table]]:
-    """The other tables of the page, by the marks that they replace."""
-    examples, over_nav2 = sizes.examples(), sizes.over_nav2()
-    kinds = ("identifiers", "names", "lines", "code_lines", "gzip_bytes")
+def _tables(outcomes: Runs) -> Tables:
+    """The tables, by the marks that they replace."""
     return {
-        **{kind: partial(sizes.size_table, examples, kind) for kind in kinds},
-        "over_nav2": lambda: over_nav2_table(over_nav2),
-        "library": lambda: sizes.library_table([*examples, *over_nav2]),
+        "H1": partial(tables.hypothesis_table, outcomes, "H1"),
+        "H2": partial(tables.hypothesis_table, outcomes, "H2"),
+        "outcomes": partial(tables.outcome_table, outcomes),
+        "damage": partial(tables.damage_table, outcomes),
+        "kinds": partial(tables.kind_table, outcomes),
+        "halves": partial(tables.half_table, outcomes),
+        "baselines": partial(tables.beside_table, outcomes, tables.OTHERS),
+        "ablations": partial(tables.beside_table, outcomes, tables.ABLATIONS),
+        "further": partial(tables.further_table, outcomes),
+        "sizes": sizes.size_table,
+        "thesis": sizes.thesis_table,
         "changes": changes_table,
         "workshop": size_table,
-        "success": lambda: success.success_table(outcomes),
-        "compared": lambda: comparison.comparison_table(outcomes),
-        "equal": lambda: comparison.comparison_table(outcomes, PATIENT),
-        "ends": lambda: comparison.ends_table(outcomes),
-        "outcomes": lambda: success.outcome_table(outcomes),
-        "patrol_by_kind": lambda: success.kind_table(outcomes, "patrol"),
-        "house_cleaning_by_kind": lambda: success.kind_table(outcomes, "house_cleaning"),
     }
 
 
-def over_nav2_table(programs: Sequence[ProgramMetrics]) -> Table:
-    """Sizes of the agents over Nav2, beside those of the baseline over Nav2."""
-    kinds = ("identifiers", "names", "code_lines", "gzip_bytes")
-    rows = tuple(
-        (
-            f"{program.name}, {side}",
-            *(getattr(counts, kind) for kind in kinds),
-        )
-        for program in programs
-        for side, counts in (
-            ("agents", program.total),
-            (BASELINE, program.counts(Group.BASELINE)),
-        )
+def _sentences(outcomes: Runs, real: Runs) -> Texts:
+    """The sentences, by the marks that they replace."""
+    of_record = (
+        sentences.lost,
+        sentences.won,
+        sentences.undecided,
+        sentences.weaker,
+        sentences.behind,
+        sentences.telling,
+        sentences.drawn,
+        sentences.absent,
     )
-    return Table(
-        "Over Nav2",
-        ("program", "identifiers", "with beliefs and variables", "code lines", "bytes compressed"),
-        rows,
-    )
+    return {
+        **{each.__name__: partial(each, outcomes) for each in of_record},
+        "larger_with_library": sizes.larger_with_library,
+        "dearer": dearer,
+        "agreement": lambda: agreement(outcomes, real),
+    }
+
+
+def agreement(virtual: Runs, real: Runs) -> str:
+    """Return the table of both clocks, or that there is none."""
+    return as_markdown(tables.agreement_table(virtual, real)) if real else "This was not run."
 
 
 def changes_table() -> Table:
@@ -119,28 +126,18 @@ def changes_table() -> Table:
         )
         for row in change_requests.table()
     )
-    return Table("Changed code lines", ("request", "agents", BASELINE), rows)
+    return Table("Changed code lines", ("request", AGENTS, BASELINE), rows)
 
 
-def summary(record: Sequence[Outcome]) -> str:
-    """The table of the front page, and its conditions: code lines, and runs that passed under disturbances."""
-    outcomes, _ = split(record)
-    agents = {each.name.partition("_")[2]: each for each in sizes.examples()}
-    nav2 = {each.name: each for each in sizes.over_nav2()}
-    rows: list[tuple[str | int, ...]] = []
-    for name in SCENARIOS:
-        program, side = (nav2[name], OVER_NAV2) if name in nav2 else (agents[name], AGENTS)
-        rows.append(
-            (
-                name.replace("_", " "),
-                program.total.code_lines,
-                program.counts(Group.BASELINE).code_lines,
-                *(
-                    success.share(comparison.runs_of(outcomes, name, each))
-                    for each in (side, BASELINE, PATIENT)
-                ),
-            )
-        )
-    runs = ("disturbed runs passed: agents", "Python", "Python, same attempts")
-    table = Table("Summary", ("scenario", "code lines: agents", "Python", *runs), tuple(rows))
-    return f"{as_markdown(table)}\n\n{textwrap.fill(comparison.conditions(outcomes), FRONT_PAGE_WIDTH)}"
+def dearer() -> str:
+    """Which change requests cost the agents more code lines than the baseline."""
+    more = [
+        f"{row.request} ({row.agents.changed} lines against {row.baseline.changed})"
+        for row in change_requests.table()
+        if row.agents.changed > row.baseline.changed
+    ]
+    return f"Change requests that cost the agents more: {', '.join(more) or 'none'}."
+
+
+def _wrapped(words: str) -> str:
+    return textwrap.fill(words, PAGE_WIDTH, subsequent_indent="  " if words.startswith("- ") else "")

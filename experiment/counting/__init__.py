@@ -4,7 +4,6 @@ docs/reference/metrics.md has the rules. ``python experiment/counting FOLDER...`
 """
 
 from counting.baselines import measure_beside
-from counting.charts import measure_chart
 from counting.counts import MEASURES, CountedFile, Counts, Group, ProgramMetrics, counts_of
 from counting.programs import MetricsError, measure
 from counting.tables import Table, as_markdown
@@ -21,5 +20,4 @@ __all__ = [
     "counts_of",
     "measure",
     "measure_beside",
-    "measure_chart",
 ]

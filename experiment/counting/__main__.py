@@ -11,7 +11,6 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))  # Python puts only this folder there
 
-from counting.charts import measure_chart
 from counting.counts import MEASURES, ProgramMetrics
 from counting.programs import DEFAULT, MetricsError, measure
 from counting.tables import Table, as_csv, as_markdown, as_text, file_table, group_table, measure_table
@@ -23,9 +22,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("folders", metavar="FOLDER", type=Path, nargs="+")
     parser.add_argument("--files", action="store_true", help="list every counted file")
     parser.add_argument("--format", choices=SHOWN, default="text")
-    parser.add_argument(
-        "--charts", metavar="FOLDER", type=Path, help="write a bar chart of each measure, as SVG"
-    )
     parser.add_argument(
         "--library",
         metavar="PACKAGE",
@@ -39,10 +35,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(wrong, file=sys.stderr)
         return 1
     print(SHOWN[given.format](programs, given.files))
-    if given.charts is not None:
-        given.charts.mkdir(parents=True, exist_ok=True)
-        for name in MEASURES:
-            (given.charts / f"{name}.svg").write_text(measure_chart(programs, name), encoding="utf-8")
     return 0
 
 

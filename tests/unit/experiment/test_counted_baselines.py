@@ -5,7 +5,7 @@ from pathlib import Path
 import py_trees
 import pytest
 
-from counting import Group, MetricsError, ProgramMetrics, measure, measure_beside, measure_chart
+from counting import Group, MetricsError, ProgramMetrics, measure, measure_beside
 
 BASELINE = {
     "patrol.py": "import rclpy\nimport steps\nfrom py_trees.common import Status\n\nmain = 1\n",
@@ -56,9 +56,3 @@ def test_wrong_and_missing_baselines_are_reported_in_one_pass(agent: Path) -> No
     ]
     with pytest.raises(ValueError, match="zip"):
         measure_beside([agent, agent], [[agent.parent / "other.py"]])
-
-
-def test_the_chart_has_a_bar_for_the_baseline_beside_that_of_the_agents(agent: Path) -> None:
-    svg = measure_chart(measure_beside([agent], [[agent.parent / "patrol.py"]]), "lines")
-    assert "<title>agent, agents: 2</title>" in svg
-    assert "<title>agent, baseline: 9</title>" in svg

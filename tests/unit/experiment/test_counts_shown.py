@@ -1,17 +1,13 @@
-"""Tables and charts of counts, and the script that prints them."""
+"""Tables of counts, and the script that prints them."""
 
 import gzip
 from pathlib import Path
-from xml.etree import ElementTree
 
 import pytest
 
-from counting import MEASURES, CountedFile, Group, ProgramMetrics, Table
+from counting import CountedFile, Group, ProgramMetrics, Table
 from counting.__main__ import main
-from counting.charts import Series, bar_chart, measure_chart
 from counting.tables import as_csv, as_markdown, as_text, file_table, group_table, measure_table
-
-SVG = "{http://www.w3.org/2000/svg}"
 
 
 def source(name: str, lines: int) -> CountedFile:
@@ -76,48 +72,6 @@ def test_a_table_without_rows_is_a_header() -> None:
     assert as_text(Table("None", ("program",), ())) == "None\nprogram"
 
 
-def texts(svg: str) -> list[str]:
-    return [each.text or "" for each in ElementTree.fromstring(svg).iter(f"{SVG}text")]
-
-
-def bars(svg: str) -> list[tuple[str, float, float]]:
-    """What each bar says of itself, its upper edge and its height."""
-    return [
-        (title.text or "", float(each.attrib["y"]), float(each.attrib["height"]))
-        for each in ElementTree.fromstring(svg).iter(f"{SVG}rect")
-        if (title := each.find(f"{SVG}title")) is not None
-    ]
-
-
-def test_a_chart_has_bars_in_proportion_with_artifacts_on_agents() -> None:
-    svg = measure_chart([SQUARE, PATROL], "lines")
-    drawn = bars(svg)
-    assert [title for title, _, _ in drawn] == [
-        "02_square, agents: 18",
-        "02_square, baseline: 73",
-        "04_patrol, agents: 98",
-        "04_patrol, artifacts: 20",
-        "04_patrol, baseline: 162",
-    ]
-    heights = [height for _, _, height in drawn]
-    scale = heights[-1] / 162
-    assert heights == pytest.approx([18 * scale, 73 * scale, 98 * scale, 20 * scale, 162 * scale], abs=0.1)
-    (_, agents, _), (_, artifacts, height) = drawn[2:4]
-    assert artifacts + height == pytest.approx(agents, abs=0.1)
-    assert texts(svg) == [
-        *("Physical lines", "agents", "artifacts", "baseline"),
-        *("0", "40", "80", "120", "160", "200"),
-        *("18", "73", "118", "162"),
-        *("02 square", "04 patrol"),
-    ]
-
-
-def test_a_chart_escapes_names_and_accepts_zeros() -> None:
-    svg = bar_chart("<&>", ['a"<b'], [[Series("x & y", (0,))], [Series("z", (3,))]])
-    assert texts(svg) == ["<&>", "z", "0", "1", "2", "3", "4", "5", "0", "3", 'a"<b']
-    assert bar_chart("none", [], []).count("<rect") == 0
-
-
 @pytest.fixture
 def square(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
@@ -138,13 +92,6 @@ def square(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_the_script_prints_tables(square: Path, capsys, options: list[str], first: str) -> None:
     assert main(["square", *options]) == 0
     assert capsys.readouterr().out.startswith(first)
-
-
-def test_the_script_writes_charts(square: Path) -> None:
-    assert main(["square", "--charts", "made/charts"]) == 0
-    assert {path.name for path in (square / "made" / "charts").iterdir()} == {
-        f"{name}.svg" for name in MEASURES
-    }
 
 
 def test_all_that_cannot_be_counted_is_reported_in_one_pass(square: Path, capsys) -> None:
