@@ -8,15 +8,19 @@ from made_up import outcome, outcomes
 import sentences
 import tables
 from family import AGENTS, BASELINE, DONE, SILENT, compared, ends, family, points, runs_of, share
-from record import Damage, Outcome
+from outcomes import Damage
+from record import Outcome
 from scenarios import SCENARIOS
+from sides import SIDES
 
 
 def square(side: str, **how_many: int) -> list[Outcome]:
     """Runs of the square, the first seeds with the first outcome."""
     all_ends = [end for end, number in how_many.items() for _ in range(number)]
     return [
-        outcome("square", side, 2001 + number, "slip")._replace(end=end, draw=0, damage=Damage(0, False, 0))
+        outcome("square", side, 2001 + number)._replace(
+            kind="slip", end=end, draw=0, damage=Damage(0, False, 0)
+        )
         for number, end in enumerate(all_ends)
     ]
 
@@ -96,6 +100,10 @@ def test_seeds_without_an_effective_draw_are_counted() -> None:
 
 def test_sides_that_were_not_run_are_named() -> None:
     assert sentences.absent(outcomes(2)) == "These sides were not run: agents before."
+
+
+def test_all_sides_that_run_are_on_the_page() -> None:
+    assert set(SIDES) == {*tables.WHOLE, *tables.ABLATIONS} - {"agents before"}
 
 
 def test_the_silent_share_is_of_the_failing_runs() -> None:

@@ -5,6 +5,7 @@ from math import exp, inf, log
 
 import pytest
 
+from disturbances import KINDS
 from response import DOSES, Curve, Dose, Run, bins, fit, half
 
 SLIP = DOSES["slip"]
@@ -20,6 +21,11 @@ def runs_with(odds: float, growth: float, number: int = 400) -> list[Run]:
     draw = random.Random(number)
     doses = [draw.uniform(SLIP.low, SLIP.high) for _ in range(number)]
     return [(dose, draw.random() > 1 / (1 + exp(-odds - growth * dose))) for dose in doses]
+
+
+def test_the_ranges_are_those_that_doses_are_drawn_from() -> None:
+    ranges = {name: (kind.least, kind.most) for name, kind in KINDS.items()}
+    assert {name: (dose.low, dose.high) for name, dose in DOSES.items()} == ranges
 
 
 def test_bins_have_equal_widths_and_all_runs() -> None:
