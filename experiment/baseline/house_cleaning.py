@@ -137,7 +137,7 @@ class HouseCleaning(Node):
         rooms = []
         for number in range(1, ROUNDS + 1):
             rooms += [self.create_room(f"{room} {number}", room, *ROOMS[room]) for room in ROOMS]
-            rooms += [self.navigate_to(f"hallway {number}", HALLWAY), Log(f"round {number} is done", self)]
+            rooms += [self.navigate_to(f"hallway {number}", HALLWAY), Log("hallway", self)]
         clean = py_trees.idioms.pick_up_where_you_left_off("Clean", rooms)
         return py_trees.composites.Sequence("House", memory=False, children=[self.create_energy(), clean])
 
@@ -149,10 +149,9 @@ class HouseCleaning(Node):
             "Recharge",
             memory=True,
             children=[
-                Log("battery low", self),
                 self.navigate_to("dock", DOCK),
+                Log("dock", self),
                 py_trees.behaviours.WaitForBlackboardVariableValue("Until full", full),
-                Log("battery full", self),
             ],
         )
         check = py_trees.behaviours.CheckBlackboardVariableValue("Enough?", enough)
@@ -194,7 +193,6 @@ class HouseCleaning(Node):
             return
         self.tree.tick()
         if self.tree.root.status == Status.SUCCESS:
-            self.get_logger().info(f"The house is clean: {ROUNDS} rounds")
             raise SystemExit
         if self.tree.root.status == Status.FAILURE:
             self.get_logger().error(f"I need help: {self.tree.tip().name} cannot be reached")

@@ -88,7 +88,7 @@ class Patrol(Node):
 
     def __init__(self):
         super().__init__("patrol")
-        self.visits, self.recharges, self.lowest = 0, 0, FULL
+        self.recharges = 0
         self.shift = self.declare_parameter("shift", 10).value  # recharges
         self.attempts = self.declare_parameter("attempts", 20).value  # so often a way is tried
         self.pause = self.declare_parameter("pause", 2.0).value  # seconds between two attempts
@@ -121,9 +121,8 @@ class Patrol(Node):
             "Recharge",
             memory=True,
             children=[
-                Report("Battery low", lambda: self.get_logger().info("battery low")),
                 self.navigate_to("dock", DOCK),
-                Report("In the dock", self.in_dock),
+                Report("In the dock", lambda: self.get_logger().info("dock")),
                 py_trees.behaviours.WaitForBlackboardVariableValue("Until full", full),
                 Report("Charged", self.charged),
             ],
@@ -170,27 +169,12 @@ class Patrol(Node):
         self.blackboard.battery = int(100 * message.percentage)
 
     def arrived(self, corner):
-        self.get_logger().info(f"round {self.visits // 4 + 1}, corner {corner}")
-        self.visits += 1
+        self.get_logger().info(f"corner {corner}")
         if self.recharges >= self.shift:
-            self.end_shift()
-
-    def in_dock(self):
-        self.lowest = min(self.lowest, self.blackboard.battery)
-        self.get_logger().info(f"recharge {self.recharges + 1}, with {self.blackboard.battery} % left")
+            raise SystemExit
 
     def charged(self):
         self.recharges += 1
-        self.get_logger().info("battery full, on to the next corner")
-
-    def end_shift(self):
-        rounds, rest = divmod(self.visits, 4)
-        self.get_logger().info("The shift is over, and all is quiet.")
-        self.get_logger().info(f"{self.visits} corners, that is {rounds} rounds and {rest} of the next")
-        self.get_logger().info(
-            f"{self.recharges} recharges, and never less than {self.lowest} % in the battery"
-        )
-        raise SystemExit
 
 
 def main():

@@ -23,15 +23,15 @@ rounds(4).
   <- .print("I need help: ", Text);
      .stopMAS(0, 1).  // the exit status reports the failure
 
-+!arrived(0).
++!arrived(0) <- .print("hallway").
 
 +!arrived(Room)
-  <- +at_work(Room);
+  <- .print("room ", Room);
+     +at_work(Room);
      clean(Room);
      -at_work(Room).
 
-+!drive_into_dock
-  <- !go_to(dock).
++!drive_into_dock <- !go_to(dock); .print("dock").
 
 // What the battery has interrupted continues where it was.
 +!drive_out_of_dock : at_work(Room)

@@ -15,16 +15,17 @@ recharges(0).
 !patrol([1, 2, 3, 4]).
 
 // The exit status is the number of corners that were left out and not reached again.
-+!arrived(_) : shift(N) & recharges(N) & .count(unreachable(_, _), Missing)
-  <- .stopMAS(0, Missing).
++!arrived(Corner) : shift(N) & recharges(N) & .count(unreachable(_, _), Missing)
+  <- .print("corner ", Corner);
+     .stopMAS(0, Missing).
+
++!arrived(Corner) <- .print("corner ", Corner).
 
 -!keep_charged <- .stopMAS(0, 1).
 
 // The dock charges a robot that stands in it: no need to drive in and out.
-+!drive_into_dock
-  <- !go_to(dock).
++!drive_into_dock <- !go_to(dock); .print("dock").
 
-+!drive_out_of_dock : battery_full & recharges(N)
-  <- -+recharges(N + 1).
++!drive_out_of_dock : battery_full & recharges(N) <- -+recharges(N + 1).
 
 { include("$jacaros/navigation.asl") }
