@@ -8,8 +8,9 @@ the same for the same seed. Functions and classes do what rclpy documents for th
 from typing import Any
 
 from virtual_rclpy.graph import current
+from virtual_rclpy.parameter import Parameter
 
-__all__ = ["init", "spin"]
+__all__ = ["Parameter", "init", "ok", "shutdown", "spin"]
 
 
 def init() -> None:
@@ -20,3 +21,13 @@ def spin(node: Any) -> None:
     """Let time pass and run callbacks until one raises an exception."""
     del node
     current().spin()
+
+
+def ok() -> bool:
+    """Return True: the graph is there for as long as the program."""
+    return True
+
+
+def shutdown() -> None:
+    """Stop running callbacks."""
+    current().spinning = False

@@ -27,6 +27,12 @@ class ClientGoalHandle:
         self._client, self._goal_id, self._cancel = client, goal_id, cancel
         self.result, self.cancelled = Future(client.graph), Future(client.graph)
 
+    def cancel_goal(self) -> Any:
+        """Ask the server to cancel the goal, and wait for its answer."""
+        answer = self.cancel_goal_async()
+        self._client.graph.wait(answer.done)
+        return answer.result()
+
     def get_result_async(self) -> Future:
         """Return the future of ``status`` and ``result``."""
         return self.result
@@ -43,7 +49,9 @@ class ActionClient:
     closed = False
     """Whether the graph may take it for gone: it lives as long as the program."""
 
-    def __init__(self, node: Node, action_type: Interface, action_name: str) -> None:
+    def __init__(
+        self, node: Node, action_type: Interface, action_name: str, *, callback_group: Any = None
+    ) -> None:
         self.graph = node.graph
         self.name = node.backend.resolve(action_name)
         self._new_id = node.backend.new_goal_id
@@ -54,6 +62,10 @@ class ActionClient:
     def server_is_ready(self) -> bool:
         """Return whether a server offers the action."""
         return self.graph.graph.find("action", self.name) is not None
+
+    def wait_for_server(self, timeout_sec: float | None = None) -> bool:
+        """Wait until a server offers the action; return False at the timeout, in seconds."""
+        return self.graph.wait_for(self.server_is_ready, timeout_sec)
 
     def send_goal_async(self, goal: Any, feedback_callback: Callable[[Any], object] | None = None) -> Future:
         """Send a goal; the future's result is its `ClientGoalHandle`."""
@@ -73,6 +85,7 @@ class ActionClient:
     def rejected(self, goal_id: str, text: str = "") -> None:
         """The server has rejected a goal."""
         self._answered(goal_id, False)
+        self._handles[goal_id].result.set_result(SimpleNamespace(status=0, result=None))  # unknown
 
     def _answered(self, goal_id: str, accepted: bool) -> None:
         server, answer = self._sent.pop(goal_id)

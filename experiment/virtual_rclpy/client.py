@@ -21,6 +21,10 @@ class Client:
         """Return whether a node offers the service."""
         return bool(self._client.ready)
 
+    def wait_for_service(self, timeout_sec: float | None = None) -> bool:
+        """Wait until a node offers the service; return False at the timeout, in seconds."""
+        return self._graph.wait_for(self.service_is_ready, timeout_sec)
+
     def call_async(self, request: Any) -> Future:
         """Call the service; the future's result is its response. It is never done if the call fails."""
         answer = Future(self._graph)

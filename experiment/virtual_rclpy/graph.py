@@ -94,6 +94,15 @@ class VirtualGraph:
                 timer.cancel()
         return True
 
+    def wait_for(self, available: Callable[[], bool], timeout: float | None) -> bool:
+        """Look four times a second, as rclpy does, whether a server is available."""
+        end = None if timeout is None else self.clock.elapsed + timeout
+        while not available():
+            if end is not None and self.clock.elapsed >= end:
+                return False
+            self.wait(available, 0.25)
+        return True
+
     def _let_time_pass(self) -> None:
         self._time_passes = True
         self.loop.run_forever()  # until it is stopped

@@ -10,7 +10,10 @@ from typing import Any
 from virtual_rclpy.messages import MessagePackages, is_message_package
 from virtual_rclpy.system_time import virtual_system_time
 
-SUBMODULES = ("action", "executors", "node", "qos", "task", "time")
+SUBMODULES = ("action", "callback_groups", "client", "executors", "node", "parameter", "qos", "task", "time")
+ALSO = {"action.client": "action", "publisher": "node", "subscription": "node"}
+"""Modules of rclpy whose classes are elsewhere here."""
+
 STAND_INS = str(Path(__file__).parents[1] / "stand_ins")
 
 
@@ -21,12 +24,14 @@ def installed() -> Iterator[None]:
     names: dict[str, Any] = {
         "rclpy": virtual,
         **{f"rclpy.{name}": import_module(f"virtual_rclpy.{name}") for name in SUBMODULES},
+        **{f"rclpy.{name}": import_module(f"virtual_rclpy.{place}") for name, place in ALSO.items()},
     }
     hidden = {
         name: sys.modules.pop(name)
         for name in list(sys.modules)
         if name.split(".")[0] in ("rclpy", "tf2_ros") or is_message_package(name)
     }
+    before = set(sys.modules)
     finder = MessagePackages()
     sys.modules.update(names)
     sys.meta_path.insert(0, finder)
@@ -41,4 +46,20 @@ def installed() -> Iterator[None]:
         finder.close()
         for name in (*names, "tf2_ros"):
             sys.modules.pop(name, None)
+        _forget_libraries(set(sys.modules) - before)
         sys.modules.update(hidden)
+
+
+def _forget_libraries(imported: set[str]) -> None:
+    """Forget packages that import the virtual rclpy, such as yasmin_ros: they keep nodes of this run."""
+    users = {
+        name.split(".")[0]
+        for name in imported
+        if any(
+            str(getattr(value, "__module__", "")).startswith("virtual_rclpy")
+            for value in vars(sys.modules[name]).values()
+        )
+    }
+    for name in imported:
+        if name.split(".")[0] in users:
+            del sys.modules[name]

@@ -34,6 +34,7 @@ class Interface:
 
     def __init__(self, type_name: str) -> None:
         self.type_name = type_name
+        self.__name__ = type_name.split("/")[-1]
         self._parts = _PARTS.get(type_name.split("/")[1], {})
         if not self._parts or type_name.endswith(tuple(f"_{part}" for part in self._parts)):
             _SCHEMA.fields(type_name)
@@ -87,6 +88,8 @@ class MessagePackages(importlib.abc.MetaPathFinder, importlib.abc.Loader):
 
 
 def _type_in(folder: str, name: str) -> Interface:
+    if name.startswith("__"):
+        raise AttributeError(name)
     try:
         return Interface(f"{folder}/{name}")
     except UnknownInterface as unknown:

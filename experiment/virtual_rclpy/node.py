@@ -3,7 +3,6 @@
 import copy
 from collections import deque
 from collections.abc import Callable
-from types import SimpleNamespace
 from typing import Any
 
 from jacaros.robots.ros.node import Publisher as GraphPublisher
@@ -11,6 +10,7 @@ from jacaros.runtime.clock import Timer as ClockTimer
 from virtual_rclpy.client import Client
 from virtual_rclpy.graph import VirtualGraph, current
 from virtual_rclpy.messages import Interface
+from virtual_rclpy.parameter import Parameter
 from virtual_rclpy.qos import QoSProfile, qos_of
 
 
@@ -70,7 +70,14 @@ class Logger:
         """Log a line."""
         self._graph.print_line(self._name, text)
 
-    warning = error = info
+    warn = warning = error = info
+
+    def debug(self, text: str) -> None:
+        """Do nothing, as with rclpy's default level."""
+
+
+class Subscription:
+    """The type of subscriptions, for annotations."""
 
 
 class Node:
@@ -85,8 +92,11 @@ class Node:
         self.graph = current()
         self.backend = self.graph.node(node_name, namespace)
         self._name = node_name
+        self._parameters: dict[str, Parameter] = {}
 
-    def create_publisher(self, msg_type: Interface, topic: str, qos_profile: QoSProfile | int) -> Publisher:
+    def create_publisher(
+        self, msg_type: Interface, topic: str, qos_profile: QoSProfile | int, *, callback_group: Any = None
+    ) -> Publisher:
         """Make a publisher."""
         return Publisher(self.backend.publisher(topic, msg_type.type_name, qos_of(qos_profile)))
 
@@ -96,6 +106,8 @@ class Node:
         topic: str,
         callback: Callable[[Any], object],
         qos_profile: QoSProfile | int,
+        *,
+        callback_group: Any = None,
     ) -> Any:
         """Call *callback* with each message of a topic; the oldest are dropped while callbacks are held."""
         qos = qos_of(qos_profile)
@@ -111,7 +123,7 @@ class Node:
 
         return self.backend.subscription(topic, msg_type.type_name, arrive, qos)
 
-    def create_client(self, srv_type: Interface, srv_name: str) -> Client:
+    def create_client(self, srv_type: Interface, srv_name: str, *, callback_group: Any = None) -> Client:
         """Make a client of a service."""
         return Client(self, srv_type, srv_name)
 
@@ -119,9 +131,26 @@ class Node:
         """Call *callback* every so many seconds."""
         return Timer(self.graph, timer_period_sec, callback)
 
-    def declare_parameter(self, name: str, value: Any) -> Any:
+    def declare_parameter(self, name: str, value: Any) -> Parameter:
         """Declare a parameter; its value is that of the run, if it gives one."""
-        return SimpleNamespace(value=self.graph.parameters.get(name, value))
+        self._parameters[name] = Parameter(self.graph.parameters.get(name, value))
+        return self._parameters[name]
+
+    def has_parameter(self, name: str) -> bool:
+        """Return whether a parameter is declared."""
+        return name in self._parameters
+
+    def get_parameter(self, name: str) -> Parameter:
+        """Return a declared parameter."""
+        return self._parameters[name]
+
+    def get_parameter_type(self, name: str) -> Parameter.Type:
+        """Return the type of a declared parameter."""
+        return self._parameters[name].type_
+
+    def get_name(self) -> str:
+        """Return the node's name."""
+        return self._name
 
     def get_logger(self) -> Logger:
         """Return the logger."""
