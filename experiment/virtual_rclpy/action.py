@@ -85,7 +85,7 @@ class ActionClient:
     def rejected(self, goal_id: str, text: str = "") -> None:
         """The server has rejected a goal."""
         self._answered(goal_id, False)
-        self._handles[goal_id].result.set_result(SimpleNamespace(status=0, result=None))  # unknown
+        self._handles[goal_id].result.arrive(SimpleNamespace(status=0, result=None))  # unknown
 
     def _answered(self, goal_id: str, accepted: bool) -> None:
         server, answer = self._sent.pop(goal_id)
@@ -94,7 +94,7 @@ class ActionClient:
             self.graph.graph.tell(server.cancel, goal_id, self)
 
         self._handles[goal_id] = ClientGoalHandle(self, goal_id, accepted, cancel)
-        answer.set_result(self._handles[goal_id])
+        answer.arrive(self._handles[goal_id])
 
     def feedback(self, goal_id: str, message: Any) -> None:
         """The server has sent feedback."""
@@ -105,10 +105,8 @@ class ActionClient:
     def ended(self, goal_id: str, outcome: GoalOutcome) -> None:
         """A goal is over."""
         handle = self._handles[goal_id]
-        handle.result.set_result(SimpleNamespace(status=_STATUS[outcome.status], result=outcome.result))
+        handle.result.arrive(SimpleNamespace(status=_STATUS[outcome.status], result=outcome.result))
 
     def cancel_answered(self, goal_id: str, agreed: bool) -> None:
         """The server has answered a request to cancel a goal."""
-        self._handles[goal_id].cancelled.set_result(
-            SimpleNamespace(goals_canceling=[goal_id] if agreed else [])
-        )
+        self._handles[goal_id].cancelled.arrive(SimpleNamespace(goals_canceling=[goal_id] if agreed else []))

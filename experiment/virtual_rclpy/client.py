@@ -34,4 +34,4 @@ class Client:
         return answer
 
     async def _call(self, request: Any, answer: Future) -> None:
-        answer.set_result(await self._client.call(request))
+        answer.arrive(await self._client.call(request))

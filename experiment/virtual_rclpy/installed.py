@@ -1,5 +1,6 @@
 """Programs import the virtual rclpy under the name ``rclpy``, and read the virtual clock as the system's time."""
 
+import logging
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -38,7 +39,10 @@ def installed() -> Iterator[None]:
     sys.path.insert(0, STAND_INS)
     spinning = (virtual.spin, names["rclpy.executors"].SingleThreadedExecutor.spin)
     try:
-        with virtual_system_time(lambda target: getattr(target, "__func__", target) in spinning):
+        with (
+            _own_logging(),
+            virtual_system_time(lambda target: getattr(target, "__func__", target) in spinning),
+        ):
             yield
     finally:
         sys.path.remove(STAND_INS)
@@ -48,6 +52,18 @@ def installed() -> Iterator[None]:
             sys.modules.pop(name, None)
         _forget_libraries(set(sys.modules) - before)
         sys.modules.update(hidden)
+
+
+@contextmanager
+def _own_logging() -> Iterator[None]:
+    """Undo what a program or its libraries configure for the logging of the process."""
+    root = logging.getLogger()
+    level, handlers = root.level, list(root.handlers)
+    try:
+        yield
+    finally:
+        root.setLevel(level)
+        root.handlers[:] = handlers
 
 
 def _forget_libraries(imported: set[str]) -> None:

@@ -29,6 +29,10 @@ class Future:
         for callback in self._callbacks:
             self._graph.call(callback, self)
 
+    def arrive(self, result: Any) -> None:
+        """Take the result when the program spins: as in rclpy, a callback of the executor delivers it."""
+        self._graph.call(self.set_result, result)
+
     def add_done_callback(self, callback: Callable[["Future"], object]) -> None:
         """Run *callback* with this future when the result is there."""
         if self._done:
