@@ -98,8 +98,7 @@ def _sentences(outcomes: Runs, real: Runs) -> Texts:
         sentences.lost,
         sentences.won,
         sentences.undecided,
-        sentences.weaker,
-        sentences.behind,
+        sentences.exploratory,
         sentences.telling,
         sentences.drawn,
         sentences.absent,
@@ -109,7 +108,14 @@ def _sentences(outcomes: Runs, real: Runs) -> Texts:
         "larger_with_library": sizes.larger_with_library,
         "dearer": dearer,
         "agreement": lambda: agreement(outcomes, real),
+        "against": lambda: against(outcomes),
     }
+
+
+def against(outcomes: Runs) -> str:
+    """Return the table of what points against the agents; nothing if nothing does."""
+    table = tables.against_table(outcomes)
+    return as_markdown(table) if table.rows else ""
 
 
 def agreement(virtual: Runs, real: Runs) -> str:

@@ -2,27 +2,23 @@
 
 from collections.abc import Iterable
 
+import tables
 from family import (
     AGENTS,
     BASELINE,
-    DAMAGES,
     DONE,
     HYPOTHESES,
     SILENT,
     Comparison,
     Runs,
-    compared,
     count,
     family,
     of_protocol,
     share,
 )
-from response import DOSES
 from scenarios import SCENARIOS
-from tables import BESIDE
 
 _WORDS = {DONE: "runs done", SILENT: "runs that fail in silence"}
-_MEANT_TO_RUN_EMPTY = ("fake_battery", "an empty battery")
 
 
 def lost(outcomes: Runs) -> str:
@@ -45,47 +41,13 @@ def undecided(outcomes: Runs) -> str:
     )
 
 
-def weaker(outcomes: Runs) -> str:
-    """Where single kinds of disturbance, or damage, point against the agents: exploratory, and not adjusted."""
-    protocol = of_protocol(outcomes)
-    found = []
-    for scenario in SCENARIOS:
-        for kind in DOSES:
-            runs = [each for each in protocol if each.kind == kind]
-            found += [(f", {kind}", compared(runs, scenario, what)) for what in (DONE, SILENT)]
-        harm = [what for what in DAMAGES if (scenario, what) != _MEANT_TO_RUN_EMPTY]
-        found += [("", compared(protocol, scenario, what)) for what in harm]
-    found = [(kind, each) for kind, each in found if any(each.pairs)]
-    against = [
-        f"{each.scenario}{kind}: {_WORDS.get(each.what, f'runs with {each.what}')}, {each.text}"
-        for kind, each in found
-        if each.interval.excludes_zero and not each.first_is_better
-    ]
-    text = "; ".join(against)
+def exploratory(outcomes: Runs) -> str:
+    """How many comparisons have no verdict, and in how many of them the interval excludes zero against the agents."""
+    found = tables.exploratory(outcomes)
+    against = sum(each.against for each in found)
     return (
-        f"{len(found)} further comparisons were made without a verdict: each kind of disturbance, and each damage, in each "
-        f"scenario. The interval excludes zero against the agents in {len(against)} of them{': ' if text else ''}{text}."
-    )
-
-
-def behind(outcomes: Runs) -> str:
-    """Which further sides do better than the agents, ablations included: exploratory, and not adjusted."""
-    protocol = of_protocol(outcomes)
-    found = [
-        (side, compared(protocol, scenario, what, (side, AGENTS)))
-        for side, beside in BESIDE.items()
-        for scenario in SCENARIOS
-        for what in (DONE, SILENT)
-        if beside == AGENTS
-    ]
-    better = "; ".join(
-        f"{side} in {each.scenario}: {_WORDS[each.what]}, {each.text}"
-        for side, each in found
-        if each.interval.excludes_zero and each.first_is_better
-    )
-    return (
-        "Of the other baselines and the ablations, these do better than the agents, without a verdict: "
-        f"{better or 'none'}."
+        f"{len(found)} further comparisons have no verdict: single kinds of disturbance, damage, other baselines and "
+        f"ablations. In {against} of them, the interval excludes zero against the agents{'.' if against == 0 else ':'}"
     )
 
 
@@ -113,7 +75,7 @@ def drawn(outcomes: Runs) -> str:
 def absent(outcomes: Runs) -> str:
     """Which sides the record lacks."""
     there = {each.side for each in outcomes}
-    missing = _phrase(side for side in BESIDE if side not in there)
+    missing = _phrase(side for side in tables.BESIDE if side not in there)
     return f"These sides were not run: {missing}." if missing else "All sides of the protocol were run."
 
 

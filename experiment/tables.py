@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from statistics import median
+from typing import NamedTuple
 
 from counting import Table
 from family import (
@@ -27,6 +28,8 @@ from response import DOSES, half
 from scenarios import SCENARIOS
 
 Cell = str | int
+
+MEANT_TO_RUN_EMPTY = ("fake_battery", "an empty battery")
 
 BESIDE = {
     "recovery tree": AGENTS,
@@ -117,6 +120,48 @@ def beside_table(outcomes: Runs, sides: tuple[str, ...]) -> Table:
         rows.append((scenario, side, pair[1], sum(found[0].pairs), *(_scored(each) for each in found)))
     header = ("scenario", "side", "beside", "pairs", "done", "silent")
     return Table("Beside", header, tuple(rows))
+
+
+class Exploratory(NamedTuple):
+    """A comparison without a verdict.
+
+    Attributes:
+        runs: which runs it is about: with a kind of disturbance, or of another side than the baseline.
+        comparison: agents, minus the other side.
+    """
+
+    runs: str
+    comparison: Comparison
+
+    @property
+    def against(self) -> bool:
+        """Whether the interval excludes zero, and the agents do worse."""
+        return self.comparison.interval.excludes_zero and not self.comparison.first_is_better
+
+
+def exploratory(outcomes: Runs) -> list[Exploratory]:
+    """Return all comparisons of the agents that have runs and no verdict."""
+    protocol, found = of_protocol(outcomes), []
+    others = [side for side, beside in BESIDE.items() if beside == AGENTS]
+    for scenario in SCENARIOS:
+        for kind in DOSES:
+            runs = [each for each in protocol if each.kind == kind]
+            found += [Exploratory(kind, compared(runs, scenario, what)) for what in (DONE, SILENT)]
+        harm = [what for what in DAMAGES if (scenario, what) != MEANT_TO_RUN_EMPTY]
+        found += [Exploratory("all", compared(protocol, scenario, what)) for what in harm]
+        for side in others:
+            pair = [compared(protocol, scenario, what, (AGENTS, side)) for what in (DONE, SILENT)]
+            found += [Exploratory(f"beside {side}", each) for each in pair]
+    return [each for each in found if any(each.comparison.pairs)]
+
+
+def against_table(outcomes: Runs) -> Table:
+    """A row for each comparison without a verdict whose interval excludes zero against the agents."""
+    rows = tuple(
+        (each.scenario, runs, each.what, each.text)
+        for runs, each in (found for found in exploratory(outcomes) if found.against)
+    )
+    return Table("Against the agents", ("scenario", "runs", "share with", "difference in points"), rows)
 
 
 def further_table(outcomes: Runs) -> Table:

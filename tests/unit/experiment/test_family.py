@@ -73,23 +73,28 @@ def test_what_the_baseline_wins_is_said_to_be_lost() -> None:
     assert sentences.won(runs) == "In none of the ten comparisons were the agents shown to be better."
 
 
-def test_kinds_and_damage_against_the_agents_are_named_without_a_verdict() -> None:
+def test_kinds_and_damage_against_the_agents_are_listed_without_a_verdict() -> None:
     bumped = [each._replace(damage=Damage(2, False, 0)) for each in square(AGENTS, done=20, told=20)]
-    said = sentences.weaker(bumped + square(BASELINE, done=40))
-    assert "in 2 of them: square, slip: runs done, −50 [" in said
-    assert "square: runs with a bump, +100 [" in said
+    runs = bumped + square(BASELINE, done=40)
+    assert "In 2 of them," in sentences.exploratory(runs)
+    assert [row[:3] for row in tables.against_table(runs).rows] == [
+        ("square", "slip", DONE),
+        ("square", "all", "a bump"),
+    ]
 
 
 def test_a_battery_that_is_meant_to_run_empty_is_no_damage() -> None:
     empty = [each._replace(scenario="fake_battery", kind="late") for each in square(AGENTS, done=40)]
     drained = [each._replace(damage=Damage(0, True, 0)) for each in empty]
-    assert "0 of them" in sentences.weaker(drained + [each._replace(side=BASELINE) for each in empty])
+    assert tables.against_table(drained + [each._replace(side=BASELINE) for each in empty]).rows == ()
 
 
-def test_another_baseline_that_does_better_is_named() -> None:
+def test_another_baseline_that_does_better_is_listed() -> None:
     runs = square(AGENTS, told=40) + square("state machine", done=40)
-    assert "state machine in square: runs done, +100 [" in sentences.behind(runs)
-    assert sentences.behind(square(AGENTS, done=40) + square("state machine", told=40)).endswith("none.")
+    (row,) = tables.against_table(runs).rows
+    assert row[:3] == ("square", "beside state machine", DONE)
+    assert str(row[3]).startswith("−100 [")
+    assert not tables.against_table(square(AGENTS, done=40) + square("state machine", told=40)).rows
 
 
 def test_seeds_without_an_effective_draw_are_counted() -> None:
