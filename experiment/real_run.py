@@ -2,8 +2,8 @@
 
     .venv-ros2-jazzy/bin/python experiment/real_run.py square patrol --seeds 40 --workers 2
 
-Each run has the disturbance that the record of the virtual runs has for its seed. Outcomes go to docs/experiment_ros2.jsonl.gz after
-each run; those that it has are not made again. A run takes as long as on a robot: do not load the machine meanwhile.
+Each run has the disturbance that the record of the virtual runs has for its seed. Outcomes go to
+docs/experiment_ros2.jsonl.gz after each run; those that it has are not made again. A run takes as long as on a robot: do not load the machine meanwhile.
 """
 
 import argparse
@@ -168,7 +168,7 @@ def main() -> None:
         if (scenario, seed) in draws and (scenario, side, seed) not in known
     ]
     with ThreadPoolExecutor(given.workers) as pool:
-        for outcome in pool.map(lambda job: made(*job, domains), jobs):
+        for outcome in pool.map(lambda job: made(job[0], job[1], job[2], domains), jobs):
             known[outcome[:3]] = outcome
             record.write(known.values(), record.ROS2)
             print(
