@@ -61,6 +61,9 @@ robots:
         ("{kind: dead}", "'f' lacks the key 'topic'"),
         ("{kind: aborted_action}", "'f' lacks the key 'action'"),
         ("{kind: dead, topic: /scan, at: -1}", "'at' is -1, but must be at least 0"),
+        ("{kind: closed_door, door: kitchen, after: {metres: 1}}", "'f' lacks the key 'robot'"),
+        ("{kind: dead, topic: /scan, after: {metres: 1}}", "'f' lacks the key 'robot'"),
+        ("{kind: closed_door, door: kitchen, robot: six, after: {tasks: 1}}", "unknown robot 'six'"),
     ],
 )
 def test_a_mistake_has_a_location(fault: str, message: str) -> None:
