@@ -208,7 +208,7 @@ def test_a_message_is_changed_lost_or_late(fault: str, first: float) -> None:
 
     async def body(lab: Lab) -> None:
         await lab.clock.sleep(1.0)
-        assert acts(world) == -1.0, "nobody listens"
+        assert acts(world) == -1.0, "the topic has no subscriber"
         lab.backend.subscription("/scan", SCAN, lambda sample: None)
         await lab.clock.sleep(1.0)
 
