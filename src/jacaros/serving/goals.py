@@ -26,6 +26,8 @@ OVER: Final = frozenset({ACHIEVED, FAILED, REFUSED_STATE, CANCELLED})
 """Final states of a goal. It is ``pending`` until its plan first acts or waits, or executes ``.accept``, and ``running``
 from then on. It is ``waiting`` for its turn while the agent pursues as many as it offers.
 """
+BY_FAIL: Final = "fail"
+"""Message of failures by the step ``.fail(R)``."""
 CLEAN_UP = 5.0
 """Seconds that a cancelled goal waits for the clean-up of its operations."""
 
@@ -284,4 +286,6 @@ def _clean_ups(intention: Intention) -> list[Term]:
 
 def _words(reason: FailureReason) -> str:
     message = reason.message()
-    return message or ", ".join(reasons_of(reason.terms)) or "it failed"
+    if message in ("", BY_FAIL):  # the step `.fail(R)` says no more than R
+        message = ", ".join(reasons_of(reason.others())) or message or ", ".join(reasons_of(reason.terms))
+    return message or "it failed"

@@ -28,6 +28,9 @@ def test_offered_goals_are_given_followed_and_cancelled() -> None:
         async with Mas(seed=1, world="none") as mas, view(mas, role="user") as address, chromium() as page:
             await shown(page, mas, address)
             await page.wait_for("document.querySelectorAll('.offered form').length === 2")
+            # Checkboxes and scroll bars have the colours of the page, whatever the system prefers.
+            await page.prefer("dark")
+            assert await page.evaluate("getComputedStyle(document.documentElement).colorScheme") == "light"
             assert not await page.evaluate("document.querySelector('.console').checkVisibility()")
             await page.evaluate("document.querySelector('.offered input').focus()")
             await page.type("Ann, O'Hara")

@@ -135,6 +135,7 @@ def test_a_goal_without_an_applicable_plan_is_refused_and_a_late_failure_is_not(
         assert [each.state for each in goals] == ["refused", "failed", "failed", "refused"]
         assert "error(no_applicable)" in goals[0].data()["reasons"]
         assert "stuck" in goals[1].data()["reasons"]
+        assert [each.message for each in goals[1:3]] == ["stuck", "stuck"]
 
     run(test, program)
 
