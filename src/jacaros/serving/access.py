@@ -34,7 +34,12 @@ def listening_socket(what: str, address: str, port: int, help: str, backlog: int
     try:
         found = socket.create_server((address, port), family=family, backlog=backlog)
     except (OSError, OverflowError) as error:
-        why = error.strerror if isinstance(error, OSError) else "the port must be in 0 to 65535"
+        # Python 3.11 repeats the address after the reason.
+        why = (
+            str(error.strerror).partition(" (while")[0]
+            if isinstance(error, OSError)
+            else "the port must be in 0 to 65535"
+        )
         raise UsageError(f"error: cannot serve {what} at {address}:{port}: {why}\n  = help: {help}") from None
     # Connections inherit it. asyncio does not set it for sockets of the protocol 0, as here, and then a response waits
     # 40 ms between header and body.

@@ -20,7 +20,7 @@ from jacaros.look.why.tales import StoryLine
 from jacaros.look.why.why import explain
 from jacaros.runtime.clock import of_run, start_thread
 from jacaros.runtime.errors import UsageError
-from jacaros.runtime.files.texts import printable
+from jacaros.runtime.files.texts import aside, printable
 from jacaros.runtime.mas.system import System
 from jacaros.runtime.trace import Cause
 from jacaros.serving import artifacts
@@ -265,7 +265,9 @@ class Session:
         if found:
             needed = " or ".join(sorted(found[0].roles))
             raise RequestError("not_permitted", f"the {what} `{name[:80]}{size}` needs the role {needed}")
-        raise RequestError("not_offered", f"{agent.name} offers no {what} `{name[:80]}{size}`")
+        known = [each.name for each in agent.offers if each.what == what and self.caller.may(each)]
+        help = "" if name in known else aside(name[:80], known)
+        raise RequestError("not_offered", f"{agent.name} offers no {what} `{name[:80]}{size}`{help}")
 
     def _offer(self, agent: OfferingAgent, what: str, name: str, count: int | None = None) -> Offer:
         """Return the one offer of a name."""

@@ -169,7 +169,7 @@ def test_random_tokens_differ() -> None:
 @played(serving)
 async def test_a_port_in_use_is_an_error(lab) -> None:
     port = int(lab.address.split(":")[2].split("/")[0])
-    with pytest.raises(UsageError, match=r"cannot serve the view at 127.0.0.1:\d+: Address already in use"):
+    with pytest.raises(UsageError, match=r"cannot serve the view at 127.0.0.1:\d+: Address already in use\n"):
         async with view(lab.mas, port=port):
             pass
 

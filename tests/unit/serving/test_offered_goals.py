@@ -68,7 +68,11 @@ def test_results_that_a_plan_leaves_open_are_left_out() -> None:
 def test_only_what_is_offered_to_a_role_is_reachable() -> None:
     async def test(lab: Lab) -> None:
         anna, eve, warden = lab.session(), lab.session("eve", "observer"), lab.session("w", "warden")
-        assert "offers no goal `hidden`" in refused(lambda: anna.achieve("bob", "hidden"), "not_offered")
+        assert refused(lambda: anna.achieve("bob", "hidden"), "not_offered") == "bob offers no goal `hidden`"
+        misspelt = refused(lambda: anna.achieve("bob", "serch"), "not_offered")
+        assert misspelt == "bob offers no goal `serch`; did you mean `search`?"
+        secret = refused(lambda: anna.achieve("bob", "gard"), "not_offered")
+        assert "guard" not in secret  # it is offered to others
         assert "role user" in refused(lambda: eve.achieve("bob", "search"), "not_permitted")
         refused(lambda: anna.achieve("bob", "guard"), "not_permitted")
         refused(lambda: eve.tell("bob", "closed", ["kitchen"]), "not_permitted")
