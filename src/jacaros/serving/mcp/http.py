@@ -41,7 +41,11 @@ class McpOverHttp:
         """Answer a request (ASGI)."""
         if self._serving is None:
             self._serving = asyncio.create_task(self._serve())
-        inner = await asyncio.shield(self._inner)
+        if not self._inner.done():
+            await asyncio.wait((self._serving, self._inner), return_when=asyncio.FIRST_COMPLETED)
+        if not self._inner.done():
+            await self._serving  # raises why it does not serve, such as another version of the SDK
+        inner = self._inner.result()
         with self._client(scope).present():
             await inner(scope, receive, send)
 

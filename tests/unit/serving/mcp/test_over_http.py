@@ -15,6 +15,11 @@ from mcp.client import Client
 from mcp.client.streamable_http import streamable_http_client
 from mcp_lab import ERAS, text, told, wait_for
 
+import jacaros
+from jacaros import Mas
+from jacaros.serving.crossing import Crossing
+from jacaros.serving.mcp.http import McpOverHttp
+
 ANNA, EVE = "anna-0123456789abcdef", "eve-0123456789abcdef"
 LAMP = """
 { offer(goal, glow, when_left(cancel)) }
@@ -136,3 +141,16 @@ def test_a_session_belongs_to_the_caller_that_began_it(url: str) -> None:
 )
 def test_strangers_are_refused(url: str, headers: dict[str, str], status: int) -> None:
     assert httpx.post(url, json={}, headers=headers).status_code == status
+
+
+def test_an_sdk_that_cannot_be_imported_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "mcp.server.streamable_http_manager", None)
+
+    async def main() -> None:
+        loop = asyncio.get_running_loop()
+        async with asyncio.timeout(30), Mas() as mas, McpOverHttp(mas.system, Crossing(loop)) as app:
+            for _ in range(2):
+                with pytest.raises(ImportError):
+                    await app({}, None, None)
+
+    jacaros.run(main())
