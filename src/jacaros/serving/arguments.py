@@ -288,6 +288,7 @@ def results_schema(offer: Offer) -> dict[str, Any]:
 def described(offer: Offer) -> dict[str, Any]:
     """Return what is offered as JSON data, with the JSON schemas of its arguments and results."""
     found: dict[str, Any] = {
+        "what": offer.what,
         "name": offer.name,
         "form": str(offer),
         "doc": offer.doc,

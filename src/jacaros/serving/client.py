@@ -49,7 +49,7 @@ class Offered:
 
     Attributes:
         agent: name of the agent.
-        kind: ``goals``, ``beliefs``, ``questions``, ``tells`` or ``events``.
+        kind: ``goal``, ``belief``, ``question``, ``tell`` or ``event``.
         name: its name.
         form: its name with its arguments, for people.
         doc: what it means.
@@ -103,9 +103,9 @@ class Client:
         """Return what all agents offer."""
         found = []
         for agent in self.agents():
-            for kind, entries in self._ask("GET", _below(agent)).items():
+            for entries in self._ask("GET", _below(agent)).values():
                 if isinstance(entries, list):
-                    found += [_offered(agent, kind, each) for each in entries]
+                    found += [_offered(agent, each) for each in entries]
         return found
 
     # ---- requests in the language
@@ -271,7 +271,7 @@ def _events(response: HTTPResponse) -> Iterator[Json]:
                 yield json.loads(line[6:])
 
 
-def _offered(agent: str, kind: str, entry: Json) -> Offered:
+def _offered(agent: str, entry: Json) -> Offered:
     properties = entry["arguments"].get("properties", {})
     choices = tuple(tuple(map(str, each.get("enum", ()))) for each in properties.values())
-    return Offered(agent, kind, entry["name"], entry["form"], entry["doc"], choices)
+    return Offered(agent, entry["what"], entry["name"], entry["form"], entry["doc"], choices)

@@ -66,7 +66,7 @@ def test_events_from_the_opening_on_are_in_the_stream(run: ServedRun) -> None:
 @pytest.mark.parametrize(
     ("request_text", "code", "message"),
     [
-        ("fly", "not_offered", "bob offers no goal `fly/0`"),
+        ("fly", "not_offered", "bob offers no goal `fly`"),
         ("count(11, N)", "invalid_arguments", "`n` must be from 0 to 10"),
         ("count(3", "invalid_arguments", "not a literal: unclosed `(`"),
         ("count(" * 5000, "too_large", "characters"),

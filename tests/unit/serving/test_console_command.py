@@ -198,12 +198,10 @@ def test_without_prompt_toolkit_the_help_installs_it(
 
 
 OFFERS = [
-    Offered(
-        "bob", "goals", "deliver", "deliver(parcel: string, room: lab | hall)", "", ((), ("lab", "hall"))
-    ),
-    Offered("bob", "tells", "closed", "closed(room: atom)", "", ((),)),
-    Offered("eve", "goals", "deliver", "deliver(parcel: string)", "", ((),)),
-    Offered("eve", "goals", "dance", "dance", "", ()),
+    Offered("bob", "goal", "deliver", "deliver(parcel: string, room: lab | hall)", "", ((), ("lab", "hall"))),
+    Offered("bob", "tell", "closed", "closed(room: atom)", "", ((),)),
+    Offered("eve", "goal", "deliver", "deliver(parcel: string)", "", ((),)),
+    Offered("eve", "goal", "dance", "dance", "", ()),
 ]
 
 

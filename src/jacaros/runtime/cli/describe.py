@@ -207,9 +207,7 @@ def _project_data(project: Deployment, manuals: list[Manual], offers: Offers) ->
             {
                 "name": agent.name,
                 "source": str(agent.source_path),
-                "offers": [
-                    {"what": each.what, **described(each)} for each in offers.get(agent.source_path, ())
-                ],
+                "offers": [described(each) for each in offers.get(agent.source_path, ())],
             }
             for agent in project.agents
         ],

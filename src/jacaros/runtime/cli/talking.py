@@ -21,7 +21,7 @@ from jacaros.serving.shell.wording import answer_lines, error_text, event_text, 
 FAILED, REFUSED, CANCELLED, LOST = 1, 3, 4, 5
 """Exit codes of ``jacaros achieve``; 0 for an achieved goal, 2 for wrong usage."""
 _CODES = {"achieved": 0, "failed": FAILED, "refused": REFUSED, "cancelled": CANCELLED}
-_COMMANDS = {"goals": "achieve", "questions": "ask", "beliefs": "ask", "tells": "tell"}
+_COMMANDS = {"goal": "achieve", "question": "ask", "belief": "ask", "tell": "tell"}
 _PROGRAMS = (".asl", ".py", ".mas2j", ".jcm")
 
 system_options = with_options(

@@ -4,26 +4,18 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final
 from urllib.parse import quote
 
-from jacaros.agents.language.offers import Offer
+from jacaros.agents.language.offers import WHAT, Offer
 from jacaros.serving import arguments
 from jacaros.version import VERSION
 
 Json = dict[str, Any]
-KINDS: Final = {
-    "goal": "goals",
-    "belief": "beliefs",
-    "question": "questions",
-    "tell": "tells",
-    "event": "events",
-}
-"""Plural of each kind of offer, as in the description of an agent."""
 
 
 def described(agent: str, offers: Iterable[Offer]) -> Json:
     """Return what an agent offers."""
-    found: Json = {"name": agent, **{plural: [] for plural in KINDS.values()}}
+    found: Json = {"name": agent, **{f"{what}s": [] for what in WHAT}}
     for offer in offers:
-        found[KINDS[offer.what]].append(arguments.described(offer))
+        found[f"{offer.what}s"].append(arguments.described(offer))
     return found
 
 

@@ -7,21 +7,18 @@ from jacaros.runtime.errors import UsageError
 from jacaros.runtime.files.texts import help_line, printable, suggestion
 from jacaros.serving.client import Offered
 
-NOUNS = {
-    "goals": "goal",
-    "questions": "question",
-    "beliefs": "belief",
-    "tells": "belief to tell",
-    "events": "event",
-}
-"""Singular of each kind of offer."""
-GOALS, QUESTIONS, TELLS = ("goals",), ("questions", "beliefs"), ("tells",)
+GOALS, QUESTIONS, TELLS = ("goal",), ("question", "belief"), ("tell",)
 """What `achieve`, `ask` and `tell` are for."""
 _NAME = re.compile(r"\s*('[^']*'|\w+)")
 _MOST = 8
 
 Written = Callable[[str, str, str], str]
 """Returns how to write a request, from the kind of its offer, its agent ("" for any) and its text."""
+
+
+def noun(kind: str) -> str:
+    """Return what an offer of a kind is, in words."""
+    return "belief to tell" if kind == "tell" else kind
 
 
 def name_in(text: str) -> str:
@@ -50,16 +47,16 @@ def chosen(
         help = suggestion(agent, agents, f"agents: {_listed(agents)}" if agents else "")
         raise _error(f"no agent `{agent}` offers anything to you", help)
     mine = [each for each in offers if agent in ("", each.agent)]
-    name, noun = name_in(text), NOUNS[kinds[0]]
+    name, wanted = name_in(text), noun(kinds[0])
     found = [each for each in mine if each.kind in kinds and each.name == name]
     if not found:
         raise _unknown(
-            mine, kinds, name, f"{agent or 'no agent'} offers {'no' if agent else 'a'} {noun}", written
+            mine, kinds, name, f"{agent or 'no agent'} offers {'no' if agent else 'a'} {wanted}", written
         )
     owners = list(dict.fromkeys(each.agent for each in found))
     if len(owners) > 1:
         help = f"name the agent: {written(found[0].kind, owners[0], text)}"
-        raise _error(f"{_listed(owners)} offer the {noun} `{name}`", help)
+        raise _error(f"{_listed(owners)} offer the {wanted} `{name}`", help)
     count = text.count(",") + 1 if "(" in text else 0
     return min(found, key=lambda each: abs(each.form.count(":") - count))
 
@@ -68,10 +65,10 @@ def _unknown(
     offers: Sequence[Offered], kinds: tuple[str, ...], name: str, told: str, written: Written
 ) -> UsageError:
     """Return the error for a name that is not offered: it may be of another kind, or misspelt."""
-    other = next((each for each in offers if each.name == name and each.kind != "events"), None)
+    other = next((each for each in offers if each.name == name and each.kind != "event"), None)
     if other is not None:
         help = written(other.kind, "", other.form)
-        return _error(f"`{name}` is a {NOUNS[other.kind]}, not a {NOUNS[kinds[0]]}", help)
+        return _error(f"`{name}` is a {noun(other.kind)}, not a {noun(kinds[0])}", help)
     known = dict.fromkeys(each.name for each in offers if each.kind in kinds)
     return _error(f"{told} `{name}`", suggestion(name, known, f"offered: {_listed(known)}" if known else ""))
 

@@ -7,7 +7,7 @@ from itertools import groupby
 from jacaros.runtime.errors import JacarosError, UsageError
 from jacaros.runtime.files.texts import suggestion
 from jacaros.serving.client import Client, Json, Offered, ServiceError
-from jacaros.serving.shell.choice import GOALS, NOUNS, QUESTIONS, TELLS, chosen
+from jacaros.serving.shell.choice import GOALS, QUESTIONS, TELLS, chosen, noun
 from jacaros.serving.shell.wording import answer_lines, error_text, event_text, state_text
 
 HELP = """\
@@ -24,7 +24,7 @@ why EVENT                explain the run, such as: why +battery(50)
 questions                list open questions of agents to a person
 answer ID TEXT           answer one
 quit                     leave (or press Ctrl+D)"""
-SIGNS = {"goals": "!", "questions": "?", "beliefs": "?", "tells": "+"}
+SIGNS = {"goal": "!", "question": "?", "belief": "?", "tell": "+"}
 """What a line begins with, by the kind of the offer."""
 KEPT = 1_000
 """Number of goals whose numbers are known."""
@@ -165,7 +165,7 @@ class Dialogue:
         for agent, offers in groupby(self.offers, lambda each: each.agent):
             lines.append(agent)
             lines += [
-                f"  {NOUNS[each.kind]:14} {SIGNS.get(each.kind, '')}{each.form}  {each.doc}".rstrip()
+                f"  {noun(each.kind):14} {SIGNS.get(each.kind, '')}{each.form}  {each.doc}".rstrip()
                 for each in offers
             ]
         self._show("\n".join(lines) or _NOTHING)
@@ -175,7 +175,7 @@ class Dialogue:
         lines = [
             f"[{each.agent}] {each.name}: {line}"
             for each in self.offers
-            if each.kind == "beliefs"
+            if each.kind == "belief"
             for line in answer_lines(self._client.beliefs(each.agent, each.name))
         ]
         self._show("\n".join(lines) or "no agent offers beliefs to you")
