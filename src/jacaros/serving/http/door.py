@@ -24,7 +24,12 @@ from jacaros.serving.crossing import Crossing, DoorThread
 from jacaros.serving.http.app import Resources
 from jacaros.serving.http.clients import Client, Encoder
 from jacaros.serving.http.guard import LARGEST, Guard
-from jacaros.serving.http.protocol import MOST_CONNECTIONS, LimitedConnection, LimitedWebSocket
+from jacaros.serving.http.protocol import (
+    LARGEST_HEADER,
+    MOST_CONNECTIONS,
+    LimitedConnection,
+    LimitedWebSocket,
+)
 from jacaros.serving.remote import RemoteCallers
 from jacaros.serving.running import RunningService
 from jacaros.serving.service import service_of
@@ -36,8 +41,6 @@ KEEP_ALIVE = 30
 """Seconds that a connection stays open between two requests."""
 MOST_DEFECTS = 100
 """Maximum number of different defects that are logged."""
-LARGEST_HEADER = 16 * 1024
-"""Maximum size of the header of a request, in bytes."""
 MountedApp = Callable[[Crossing], AbstractAsyncContextManager[ASGIApp]]
 """Makes a further application of the same server on its loop. Its requests have passed the `Guard`."""
 
