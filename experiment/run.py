@@ -50,7 +50,7 @@ def made(wanted: list[Family], journal: Path | None, workers: int | None) -> Ite
     """Return the outcomes of families; those that a journal has are not made again, and the others are added to it."""
     known = dict(_journal_of(journal))
     new = [family for family in wanted if family not in known]
-    for family, outcomes in zip(new, run_all(new, workers=workers), strict=True):
+    for family, outcomes in zip(new, run_all(new, workers), strict=True):
         known[family] = outcomes
         if journal is not None:
             with journal.open("a", encoding="utf-8") as file:

@@ -2,9 +2,8 @@
 
 import os
 import tempfile
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
-from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -47,18 +46,17 @@ def sides_of(family: Family) -> list[str]:
     ]
 
 
-def run_all(
-    wanted: Iterable[Family], sides: Collection[str] | None = None, workers: int | None = None
-) -> Iterator[list[Outcome]]:
+def run_all(wanted: Iterable[Family], workers: int | None = None) -> Iterator[list[Outcome]]:
     """Run families, as many at once as there are processors, and yield the outcomes of each in turn."""
     with ProcessPoolExecutor(workers or os.cpu_count()) as pool:
-        yield from pool.map(partial(run_family, sides=sides), wanted)
+        yield from pool.map(run_family, wanted)
 
 
-def run_family(family: Family, sides: Collection[str] | None = None) -> list[Outcome]:
+def run_family(family: Family) -> list[Outcome]:
     """Run all sides of a family; nothing if no draw of its seed has an effect on both sides of the pair.
 
-    The pair alone decides which draw it is: so the comparison does not depend on which other sides there are.
+    The pair alone decides which draw it is: so the comparison does not depend on which other sides there are. Those on
+    which this draw has no effect are left out, such as robots that drive themselves when Nav2 aborts its goals.
     """
     possible = sides_of(family)
     # Trees take less of the processor than agents do: they are the first to find out that a draw has no effect.
@@ -71,8 +69,8 @@ def run_family(family: Family, sides: Collection[str] | None = None) -> list[Out
                 break
         else:
             others = [side for side in possible if side not in PAIR and can_run(side)]
-            found += [run_one(family, side, draw) for side in others if sides is None or side in sides]
-            return sorted(found)
+            found += [run_one(family, side, draw) for side in others]
+            return sorted(each for each in found if each.effect is not None)
     return []
 
 
