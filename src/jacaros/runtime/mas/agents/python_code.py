@@ -163,14 +163,21 @@ class _Functions(dict[str, Any]):
         return additions.arities.get(name, default)
 
 
+_NOW: Final = "self.clock.now()"
+_DATE: Final = "datetime.fromtimestamp(self.clock.now(), UTC)"
 _INSTEAD: Final = {
-    "time": "self.clock.now()",
-    "time_ns": "self.clock.now()",
-    "monotonic": "self.clock.elapsed",
-    "monotonic_ns": "self.clock.elapsed",
-    "sleep": "await self.sleep(seconds)",
+    "time.time": _NOW,
+    "time.time_ns": _NOW,
+    "time.monotonic": "self.clock.elapsed",
+    "time.monotonic_ns": "self.clock.elapsed",
+    "time.sleep": "await self.sleep(seconds)",
+    "datetime.datetime.now": _DATE,
+    "datetime.datetime.today": _DATE,
+    "datetime.datetime.utcnow": _DATE,
+    "datetime.date.today": f"{_DATE}.date()",
+    "threading.Timer": "self.clock.call_later(seconds, function)",
 }
-"""Functions of the module `time`, and what artifacts and agents in Python have instead."""
+"""Calls that follow the machine's time, and what artifacts and agents in Python have instead."""
 
 
 def readings(files: Iterable[Path]) -> Iterator[Diagnostic]:
@@ -179,7 +186,7 @@ def readings(files: Iterable[Path]) -> Iterator[Diagnostic]:
         if "site-packages" in file.parts:
             continue
         text = file_text(file)
-        found = next(_calls(text), None) if "time" in text else None
+        found = next(_calls(text), None) if "time" in text or "threading" in text else None
         if found is not None:
             place, name = found
             span = Span(
@@ -189,18 +196,20 @@ def readings(files: Iterable[Path]) -> Iterator[Diagnostic]:
                 place.end_lineno or place.lineno,
                 (place.end_col_offset or place.col_offset) + 1,
             )
-            message = f"`time.{name}` follows the time of day, not the virtual clock of this run"
+            message = f"`{name}` follows the time of day, not the virtual clock of this run"
             yield Diagnostic("warning", message, span, f"use `{_INSTEAD[name]}`, or run with --clock real")
 
 
 def _calls(text: str) -> Iterator[tuple[ast.expr, str]]:
-    """Yield the calls of functions of `time`, however imported, with their names there."""
+    """Yield the calls that follow the machine's time, however imported, with their full names."""
+    modules = {name.partition(".")[0] for name in _INSTEAD}
     names: dict[str, str] = {}
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Import):
-            modules = [each.asname or each.name for each in node.names if each.name == "time"]
-            names |= {f"{module}.{name}": name for module in modules for name in _INSTEAD}
-        elif isinstance(node, ast.ImportFrom) and node.module == "time":
-            names |= {each.asname or each.name: each.name for each in node.names if each.name in _INSTEAD}
-        elif isinstance(node, ast.Call) and (name := names.get(ast.unparse(node.func))):
-            yield node.func, name
+            names |= {each.asname or each.name: each.name for each in node.names if each.name in modules}
+        elif isinstance(node, ast.ImportFrom) and node.module in modules:
+            names |= {each.asname or each.name: f"{node.module}.{each.name}" for each in node.names}
+        elif isinstance(node, ast.Call):
+            first, dot, rest = ast.unparse(node.func).partition(".")
+            if (name := f"{names.get(first)}{dot}{rest}") in _INSTEAD:
+                yield node.func, name
