@@ -74,19 +74,22 @@ def check_battery(blackboard):
     if blackboard["battery"] > LOW:
         blackboard["pose"] = PLACES[blackboard["places"][0]][0]
         return BATTERY_OK
-    yasmin.YASMIN_LOG_INFO("battery low")
     blackboard["pose"], blackboard["recharging"] = DOCK, True
     return BATTERY_LOW
 
 
 def leave(blackboard):
     if blackboard["places"].pop(0) == "hallway":
-        yasmin.YASMIN_LOG_INFO(f"round {ROUNDS - len(blackboard['places']) // len(PLACES)} is done")
+        yasmin.YASMIN_LOG_INFO("hallway")
     return HAS_NEXT if blackboard["places"] else END
 
 
+def dock(blackboard):
+    yasmin.YASMIN_LOG_INFO("dock")
+    return SUCCEED
+
+
 def end_charging(blackboard):
-    yasmin.YASMIN_LOG_INFO("battery full")
     blackboard["recharging"] = False
     return SUCCEED
 
@@ -105,7 +108,8 @@ def create_cleaning(blackboard):
     house.add_state("DRIVING_TO_ROOM", drive, {SUCCEED: "CLEANING", CANCEL: "CHECKING_BATTERY", ABORT: ABORT})
     house.add_state("CLEANING", cleaning, {SUCCEED: "LEAVING", CANCEL: "CHECKING_BATTERY"})
     house.add_state("LEAVING", CbState([HAS_NEXT, END], leave), {HAS_NEXT: "ENTERING", END: SUCCEED})
-    house.add_state("DRIVING_TO_DOCK", drive, {SUCCEED: "CHARGING", CANCEL: "DRIVING_TO_DOCK", ABORT: ABORT})
+    house.add_state("DRIVING_TO_DOCK", drive, {SUCCEED: "DOCKING", CANCEL: "DRIVING_TO_DOCK", ABORT: ABORT})
+    house.add_state("DOCKING", CbState([SUCCEED], dock), {SUCCEED: "CHARGING"})
     house.add_state(
         "CHARGING", ChargeState(), {CHARGED: "RETURNING", CHARGING: "CHARGING", CANCEL: "CHARGING"}
     )
@@ -118,9 +122,7 @@ def main():
     set_ros_loggers()
     blackboard = Blackboard({"places": [*PLACES] * ROUNDS})
     outcome = create_cleaning(blackboard)(blackboard)
-    if outcome == SUCCEED:
-        yasmin.YASMIN_LOG_INFO(f"The house is clean: {ROUNDS} rounds")
-    else:
+    if outcome != SUCCEED:
         yasmin.YASMIN_LOG_ERROR(f"I need help: {blackboard['pose']} cannot be reached")
     rclpy.shutdown()
     sys.exit(outcome != SUCCEED)

@@ -22,27 +22,24 @@ BATTERY_LOW, BATTERY_OK, HAS_NEXT, END = "battery_low", "battery_ok", "has_next"
 
 def check_battery(blackboard):
     if blackboard["battery"] > LOW:
-        blackboard["pose"] = CORNERS[blackboard["visits"] % 4]
+        blackboard["pose"] = CORNERS[blackboard["corner"]]
         return BATTERY_OK
-    yasmin.YASMIN_LOG_INFO("battery low")
     blackboard["pose"], blackboard["recharging"] = DOCK, True
     return BATTERY_LOW
 
 
 def arrive(blackboard):
-    rounds, corner = divmod(blackboard["visits"], 4)
-    yasmin.YASMIN_LOG_INFO(f"round {rounds + 1}, corner {corner + 1}")
-    blackboard["visits"] += 1
+    yasmin.YASMIN_LOG_INFO(f"corner {blackboard['corner'] + 1}")
+    blackboard["corner"] = (blackboard["corner"] + 1) % len(CORNERS)
     return END if blackboard["recharges"] >= blackboard["shift"] else HAS_NEXT
 
 
 def dock(blackboard):
-    yasmin.YASMIN_LOG_INFO(f"recharge {blackboard['recharges'] + 1}, with {blackboard['battery']} % left")
+    yasmin.YASMIN_LOG_INFO("dock")
     return SUCCEED
 
 
 def end_charging(blackboard):
-    yasmin.YASMIN_LOG_INFO("battery full, on to the next corner")
     blackboard["recharges"] += 1
     blackboard["recharging"] = False
     return SUCCEED
@@ -78,11 +75,9 @@ def create_patrol(blackboard):
 def main():
     rclpy.init()
     set_ros_loggers()
-    blackboard = Blackboard({"visits": 0, "recharges": 0})
+    blackboard = Blackboard({"corner": 0, "recharges": 0})
     outcome = create_patrol(blackboard)(blackboard)
-    if outcome == SUCCEED:
-        yasmin.YASMIN_LOG_INFO(f"the shift is over: {blackboard['visits']} corners")
-    else:
+    if outcome != SUCCEED:
         yasmin.YASMIN_LOG_ERROR(f"I need help: {blackboard['pose']} cannot be reached")
     rclpy.shutdown()
     sys.exit(outcome != SUCCEED)
