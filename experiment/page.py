@@ -40,7 +40,7 @@ def text(record: Runs, before: Runs = (), real: Runs = ()) -> str:
             return as_markdown(found[marks[0]]())
         if marks:
             words = MARK.sub(lambda mark: said[mark[1]](), line)
-            return words if words.startswith("|") else _wrapped(words)
+            return words if "|" in words else _wrapped(words)
         return line
 
     words = (FOLDER / "page.md").read_text(encoding="utf-8")
@@ -119,8 +119,10 @@ def against(outcomes: Runs) -> str:
 
 
 def agreement(virtual: Runs, real: Runs) -> str:
-    """Return the table of both clocks, or that there is none."""
-    return as_markdown(tables.agreement_table(virtual, real)) if real else "This was not run."
+    """Return how the runs on both clocks agree, or that there are none."""
+    if not real:
+        return "This was not run."
+    return f"{sentences.agreeing(virtual, real)}\n\n{as_markdown(tables.agreement_table(virtual, real))}"
 
 
 def changes_table() -> Table:

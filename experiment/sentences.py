@@ -79,6 +79,16 @@ def absent(outcomes: Runs) -> str:
     return f"These sides were not run: {missing}." if missing else "All sides of the protocol were run."
 
 
+def agreeing(virtual: Runs, real: Runs) -> str:
+    """How many runs on real ROS 2 have the outcome of their twin on the virtual clock."""
+    pairs = tables.twins(virtual, real)
+    alike = sum(one.end == other.end for one, other in pairs)
+    return (
+        f"{len(real)} runs were made on real ROS 2. {len(pairs)} of them have a twin with the same draw on the virtual "
+        f"clock; {share(alike, len(pairs)) or 'none'} of these have the same outcome."
+    )
+
+
 def conditions(outcomes: Runs) -> str:
     """What a reader must know beside the table of the front page, which has the intervals."""
     found = family(outcomes)

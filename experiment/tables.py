@@ -46,6 +46,9 @@ OTHERS, ABLATIONS = tuple(BESIDE)[:3], tuple(BESIDE)[3:]
 WHOLE = (AGENTS, BASELINE, *OTHERS)
 """The sides that are no ablation."""
 
+WITH_ALL_SEEDS = WHOLE[:4]
+"""The sides with enough runs for a curve of dose and response."""
+
 
 def hypothesis_table(outcomes: Runs, name: str) -> Table:
     """A row for each scenario: the share of each side, their difference, and whether it was shown."""
@@ -101,14 +104,16 @@ def kind_table(outcomes: Runs) -> Table:
 def half_table(outcomes: Runs) -> Table:
     """A row for each kind of disturbance: the dose at which half of the runs of each side fail."""
     rows: list[tuple[Cell, ...]] = []
+    sides = [side for side in WITH_ALL_SEEDS if any(each.side == side for each in outcomes)]
     for kind, dose in DOSES.items():
-        found = [
-            [(each.dose, each.end == DONE) for each in outcomes if (each.kind, each.side) == (kind, side)]
-            for side in (AGENTS, BASELINE)
-        ]
-        if all(found):
-            rows.append((kind, dose.name, len(found[0]), *(str(half(runs, dose, kind)) for runs in found)))
-    return Table("Half fail", ("disturbance", "dose", "runs of each", AGENTS, BASELINE), tuple(rows))
+        cells = []
+        for side in sides:
+            runs = [
+                (each.dose, each.end == DONE) for each in outcomes if (each.kind, each.side) == (kind, side)
+            ]
+            cells.append(f"{half(runs, dose, kind)}, {len(runs)} runs" if runs else "")
+        rows.append((kind, dose.name, *cells))
+    return Table("Half fail", ("disturbance", "dose", *sides), tuple(rows))
 
 
 def beside_table(outcomes: Runs, sides: tuple[str, ...]) -> Table:
@@ -177,15 +182,20 @@ def further_table(outcomes: Runs) -> Table:
 
 def agreement_table(virtual: Runs, real: Runs) -> Table:
     """A row for each side of each scenario: how often runs on real ROS 2 have the outcome of those on the virtual clock."""
-    twins = {_key(each): each for each in virtual}
     rows: list[tuple[Cell, ...]] = []
     for scenario, side, runs in _by_side(real, WHOLE):
-        pairs = [(each, twins[_key(each)]) for each in runs if _key(each) in twins]
+        pairs = twins(virtual, runs)
         alike = sum(one.end == other.end for one, other in pairs)
         both = [ends([pair[place] for pair in pairs]) for place in (1, 0)]
         rows.append((scenario, side, len(pairs), share(alike, len(pairs)), *both))
     header = ("scenario", "side", "runs", "same outcome", "virtual clock", "real ROS 2")
     return Table("Agreement", header, tuple(rows))
+
+
+def twins(virtual: Runs, real: Runs) -> list[tuple[Outcome, Outcome]]:
+    """Return runs on real ROS 2, each with that on the virtual clock with the same seed and draw."""
+    known = {_key(each): each for each in virtual}
+    return [(each, known[_key(each)]) for each in real if _key(each) in known]
 
 
 def _key(run: Outcome) -> tuple[str, str, int, int]:

@@ -147,6 +147,10 @@ def test_agreement_counts_runs_with_the_same_outcome() -> None:
     agents, baseline = tables.agreement_table(virtual, real).rows
     assert agents == ("square", AGENTS, 4, share(3, 4), "3 / 1 / 0", "2 / 2 / 0")
     assert baseline == ("square", BASELINE, 0, "", "", "")
+    assert sentences.agreeing(virtual, real) == (
+        "5 runs were made on real ROS 2. 4 of them have a twin with the same draw on the virtual clock; "
+        "3 (30–95 %) of these have the same outcome."
+    )
 
 
 def test_runs_with_further_kinds_have_a_table_of_their_own() -> None:
