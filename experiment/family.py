@@ -27,6 +27,7 @@ HAS: Mapping[str, Callable[[Outcome], bool]] = {
 
 DAMAGES = tuple(HAS)[2:]
 SIGNIFICANT = 0.05
+NO_BREAK = "\N{NO-BREAK SPACE}"
 
 
 class Comparison(NamedTuple):
@@ -112,7 +113,7 @@ def ends(outcomes: Runs) -> str:
 def share(part: int, runs: int) -> str:
     """Return a number of runs, with the interval of its share; nothing without runs."""
     low, high = wilson(part, runs)
-    return f"{part} ({100 * low:.0f}–{100 * high:.0f} %)" if runs else ""
+    return f"{part} ({100 * low:.0f}–{100 * high:.0f}{NO_BREAK}%)" if runs else ""
 
 
 def points(difference: float) -> str:

@@ -61,14 +61,14 @@ def summary(record: Runs) -> str:
     """Return the table of the front page, and its conditions; where the agents do worst comes first."""
     outcomes = of_protocol(record)
     found = {each: compared(outcomes, each, DONE) for each in SCENARIOS}
-    rows = []
+    rows: list[tuple[str | int, ...]] = []
     for name in sorted(SCENARIOS, key=lambda each: found[each].pairs.difference):
         pair = (AGENTS, BASELINE)
         lines = " / ".join(str(sizes.size_of(name, side).program.code_lines) for side in pair)
         cells = (ends(runs_of(outcomes, name, side)) for side in pair)
         silent = compared(outcomes, name, SILENT)
-        rows.append((name.replace("_", " "), *cells, found[name].text, silent.text, lines))
-    header = ("scenario", "agents", "Python", "done: difference", "silent: difference", "code lines")
+        rows.append((name.replace("_", " "), sum(silent.pairs), *cells, found[name].text, silent.text, lines))
+    header = ("scenario", "pairs", "agents", "Python", "done: difference", "silent: difference", "code lines")
     table = as_markdown(Table("Summary", header, tuple(rows)))
     return f"{table}\n\n{textwrap.fill(sentences.conditions(record), FRONT_PAGE_WIDTH)}"
 

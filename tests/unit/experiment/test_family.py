@@ -114,8 +114,8 @@ def test_all_sides_that_run_are_on_the_page() -> None:
 def test_the_silent_share_is_of_the_failing_runs() -> None:
     runs = square(AGENTS, done=90, told=10) + square(BASELINE, done=50, told=10, silent=40)
     assert sentences.telling(runs) == (
-        "Failing runs that end in silence: of the 10 failing runs of the agents, 0 (0–28 %); "
-        "of the 50 failing runs of the baseline, 40 (67–89 %)."
+        "Failing runs that end in silence: of the 10 failing runs of the agents, 0 (0–28\N{NO-BREAK SPACE}%); "
+        "of the 50 failing runs of the baseline, 40 (67–89\N{NO-BREAK SPACE}%)."
     )
 
 
@@ -149,7 +149,7 @@ def test_agreement_counts_runs_with_the_same_outcome() -> None:
     assert baseline == ("square", BASELINE, 0, "", "", "")
     assert sentences.agreeing(virtual, real) == (
         "5 runs were made on real ROS 2. 4 of them have a twin with the same draw on the virtual clock; "
-        "3 (30–95 %) of these have the same outcome."
+        "3 (30–95\N{NO-BREAK SPACE}%) of these have the same outcome."
     )
 
 
