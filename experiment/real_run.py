@@ -3,7 +3,8 @@
     .venv-ros2-jazzy/bin/python experiment/real_run.py square patrol --seeds 40 --workers 2
 
 Each run has the disturbance that the record of the virtual runs has for its seed. Outcomes go to
-docs/experiment_ros2.jsonl.gz after each run; those that it has are not made again. A run takes as long as on a robot: do not load the machine meanwhile.
+docs/experiment_ros2.jsonl.gz after each run; those that it has are not made again. A run takes as long as on a robot:
+do not load the machine meanwhile.
 """
 
 import argparse
