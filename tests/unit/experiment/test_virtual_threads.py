@@ -80,7 +80,9 @@ def test_a_callback_waits_until_its_goal_is_cancelled(run, kind: str, lines: lis
 
 
 def test_a_server_that_does_not_come_is_waited_for_until_the_timeout(run) -> None:
-    text = "log(str(ActionClient(node, NavigateToPose, 'none').wait_for_server(1.5)) + f' {time.monotonic()}')"
+    text = (
+        "log(str(ActionClient(node, NavigateToPose, 'none').wait_for_server(1.5)) + f' {time.monotonic()}')"
+    )
     assert said(run(text)) == ["False 1.5"]
 
 
