@@ -265,8 +265,9 @@ class Session:
         if found:
             needed = " or ".join(sorted(found[0].roles))
             raise RequestError("not_permitted", f"the {what} `{name[:80]}{size}` needs the role {needed}")
-        known = [each.name for each in agent.offers if each.what == what and self.caller.may(each)]
-        help = "" if name in known else aside(name[:80], known)
+        known = [each for each in agent.offers if each.what == what and self.caller.may(each)]
+        forms = " or ".join(str(each) for each in known if each.name == name)
+        help = f"; expected {forms}" if forms else aside(name[:80], (each.name for each in known))
         raise RequestError("not_offered", f"{agent.name} offers no {what} `{name[:80]}{size}`{help}")
 
     def _offer(self, agent: OfferingAgent, what: str, name: str, count: int | None = None) -> Offer:
