@@ -71,7 +71,7 @@ def test_only_what_is_offered_to_a_role_is_reachable() -> None:
         assert refused(lambda: anna.achieve("bob", "hidden"), "not_offered") == "bob offers no goal `hidden`"
         misspelt = refused(lambda: anna.achieve("bob", "serch"), "not_offered")
         assert misspelt == "bob offers no goal `serch`; did you mean `search`?"
-        wrong = refused(lambda: anna.achieve_text("bob", "count(1)"), "not_offered")
+        wrong = refused(lambda: anna.achieve("bob", "count(1)"), "not_offered")
         assert wrong == "bob offers no goal `count/1`; expected count(n: number 0..10, -> next: number)"
         secret = refused(lambda: anna.achieve("bob", "gard"), "not_offered")
         assert "guard" not in secret  # it is offered to others
