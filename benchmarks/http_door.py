@@ -1,6 +1,6 @@
 """Load on the HTTP door: goals from several clients, watchers, and the agents' own ticks meanwhile.
 
-http_door.py [--seconds 60] [--rate 500] [--watchers 0] [--clients 8]
+http_door.py [--seconds 60] [--rate 500] [--watchers 0] [--clients 8] [--role observer]
 """
 
 import argparse
@@ -42,12 +42,12 @@ class Connection:
         length = int(header.lower().partition(b"content-length: ")[2].partition(b"\r\n")[0])
         return dict(json.loads(await self._reader.readexactly(length)))
 
-    async def watch(self, seen: Counter[str]) -> None:
-        head = f"GET /events?beliefs=load.ticks HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer {TOKEN}\r\n\r\n"
+    async def watch(self, seen: Counter[str], token: str) -> None:
+        head = f"GET /events?beliefs=load.ticks HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer {token}\r\n\r\n"
         self._writer.write(head.encode())
-        async for line in self._reader:
-            if line.startswith(b"data: "):
-                seen[str(json.loads(line[6:])["event"])] += 1
+        while data := await self._reader.read(1 << 16):
+            seen["events"] += data.count(b"data: ")
+            seen["reads"] += 1
 
 
 async def ticks(connection: Connection) -> float:
@@ -55,12 +55,30 @@ async def ticks(connection: Connection) -> float:
     return float(found["beliefs"][0]["count"])  # type: ignore[index]
 
 
-async def load(port: int, arguments: argparse.Namespace) -> None:
+def token_of(watcher: int) -> str:
+    return f"watcher-{watcher:03}-0123456789abcdef"
+
+
+async def look(run: int) -> None:
+    """Print the memory of a run after 10, 30 and 60 seconds."""
+    for more in (10, 20, 30):
+        await asyncio.sleep(more)
+        print(memory(run))
+
+
+def memory(run: int) -> str:
+    status = Path(f"/proc/{run}/status")
+    return next(line for line in status.read_text().splitlines() if line.startswith("VmRSS"))
+
+
+async def load(port: int, run: int, arguments: argparse.Namespace) -> None:
     seen: Counter[str] = Counter()
     states: Counter[object] = Counter()
     watchers = [
-        asyncio.create_task((await Connection(port).open()).watch(seen)) for _ in range(arguments.watchers)
+        asyncio.create_task((await Connection(port).open()).watch(seen, token_of(number)))
+        for number in range(arguments.watchers)
     ]
+    looking = asyncio.create_task(look(run))
     late: list[float] = []
     begun, first = time.monotonic(), await ticks(await Connection(port).open())
 
@@ -89,7 +107,7 @@ async def load(port: int, arguments: argparse.Namespace) -> None:
             f"response: median {late[len(late) // 2] * 1e3:.1f} ms, 99 % {late[len(late) * 99 // 100] * 1e3:.1f} ms"
         )
     print(f"ticks of the agent: {rate:.1f}/s; events seen by {len(watchers)} watchers: {dict(seen)}")
-    for each in watchers:
+    for each in (looking, *watchers):
         each.cancel()
 
 
@@ -97,12 +115,21 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     for name, default in (("seconds", 60), ("rate", 500), ("watchers", 0), ("clients", 8)):
         parser.add_argument(f"--{name}", type=int, default=default)
+    parser.add_argument(
+        "--role", default="observer", help="role of the watchers; an operator hears of all goals"
+    )
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         program, tokens = Path(folder) / "load.asl", Path(folder) / "tokens.yaml"
         program.write_text(PROGRAM)
         tokens.touch(0o600)
-        tokens.write_text(f"bench: {{token: {TOKEN}, roles: [user]}}\n")
+        tokens.write_text(
+            f"bench: {{token: {TOKEN}, roles: [user]}}\n"
+            + "".join(
+                f"watcher{each}: {{token: {token_of(each)}, roles: [{arguments.role}]}}\n"
+                for each in range(arguments.watchers)
+            )
+        )
         command = (
             sys.executable,
             "-m",
@@ -118,10 +145,8 @@ def main() -> None:
             assert run.stderr is not None
             port = int(next(line for line in run.stderr if "serve: " in line).rpartition(":")[2])
             try:
-                asyncio.run(load(port, arguments))
-                status = Path(f"/proc/{run.pid}/status")
-                if status.exists():
-                    print(next(line for line in status.read_text().splitlines() if line.startswith("VmHWM")))
+                asyncio.run(load(port, run.pid, arguments))
+                print(memory(run.pid))
             finally:
                 run.terminate()
         used = resource.getrusage(resource.RUSAGE_CHILDREN)
