@@ -26,7 +26,9 @@ from jacaros.serving.remote import RemoteCallers
 from jacaros.serving.service import Session
 
 SOON = 0.25
-"""Seconds that the response to a new goal waits for the agent to accept or refuse it."""
+"""Seconds that the response to a new goal waits for the agent to accept or refuse it. A response that waits longer looks
+from then on whether its client has left.
+"""
 LONGEST_WAIT = 60.0
 """Maximum seconds of ``Prefer: wait=N``."""
 SHOWN, MOST_SHOWN = 100, 1_000

@@ -14,8 +14,8 @@ from jacaros.serving.service import Event, Service, Session
 
 MOST_STREAMS = 128
 """Maximum number of event streams of one caller."""
-REMEMBERED = 2_000
-"""Number of newest events whose JSON is remembered."""
+REMEMBERED = 1_000_000
+"""Maximum number of characters of the events whose JSON is remembered, beside the newest."""
 
 Stream = Outbox[str | None]
 """Events as JSON for one stream; None ends it."""
@@ -26,14 +26,16 @@ class Encoder:
 
     def __init__(self) -> None:
         self._known: dict[int, tuple[Event, str]] = {}
+        self._size = 0
 
     def text(self, event: Event) -> str:
         """Return an event as JSON."""
         key = id(event.get("beliefs", event))  # streams have events of their own about the same beliefs
         if key not in self._known:
-            if len(self._known) >= REMEMBERED:
-                del self._known[next(iter(self._known))]
+            while self._size > REMEMBERED:
+                self._size -= len(self._known.pop(next(iter(self._known)))[1])
             self._known[key] = event, encoded(event)  # with the event, so that no other gets its id
+            self._size += len(self._known[key][1])
         return self._known[key][1]
 
 

@@ -104,6 +104,15 @@ def test_a_header_that_never_ends_is_not_awaited(sent: bytes, monkeypatch: pytes
     serve(test)
 
 
+@pytest.mark.parametrize("before", ["", f"{GET}\r\n"])
+def test_a_header_that_is_too_large_is_refused(before: str) -> None:
+    async def test(lab: Lab) -> None:
+        sent = f"{before}GET / HTTP/1.1\r\nX: {'x' * protocol.LARGEST_HEADER}"
+        assert b"400 Bad Request" in await answered(lab, sent.encode())
+
+    serve(test)
+
+
 def test_a_second_header_that_trickles_is_not_awaited(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(protocol, "HEADER_PATIENCE", 0.2)
 

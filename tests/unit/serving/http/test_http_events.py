@@ -230,7 +230,7 @@ def test_a_reader_that_lags_gets_a_last_event() -> None:
 
 
 def test_an_event_is_encoded_once_for_all_streams(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(clients, "REMEMBERED", 2)
+    monkeypatch.setattr(clients, "REMEMBERED", 80)
     encoder, facts, other = clients.Encoder(), [{"level": 80}], [{"level": 80}]
     goal = {"event": "goal", "id": "1"}
     first, second = ({"event": "belief", "agent": "bob", "beliefs": facts} for _ in range(2))
