@@ -121,6 +121,7 @@ class HouseCleaning(Node):
         super().__init__("house_cleaning")
         self.attempts = self.declare_parameter("attempts", 20).value  # so often a way is tried
         self.pause = self.declare_parameter("pause", 2.0).value  # seconds between two attempts
+        self.charged_within = self.declare_parameter("charged_within", 60.0).value  # seconds in the dock
         self.nav2 = ActionClient(self, NavigateToPose, "navigate_to_pose")
         self.costmap = self.create_client(ClearEntireCostmap, "global_costmap/clear_entirely_global_costmap")
         self.tasks = self.create_publisher(String, "cleaning/task", 10)
@@ -145,13 +146,14 @@ class HouseCleaning(Node):
         """Whatever the robot is doing: when the battery is low, it charges until the battery is full."""
         enough = ComparisonExpression("battery", LOW, operator.gt)
         full = ComparisonExpression("battery", FULL, operator.ge)
+        charge = py_trees.behaviours.WaitForBlackboardVariableValue("Until full", full)
         recharge = py_trees.composites.Sequence(
             "Recharge",
             memory=True,
             children=[
                 self.navigate_to("dock", DOCK),
                 Log("dock", self),
-                py_trees.behaviours.WaitForBlackboardVariableValue("Until full", full),
+                py_trees.decorators.Timeout("A full battery", charge, self.charged_within),
             ],
         )
         check = py_trees.behaviours.CheckBlackboardVariableValue("Enough?", enough)

@@ -92,6 +92,7 @@ class Patrol(Node):
         self.shift = self.declare_parameter("shift", 10).value  # recharges
         self.attempts = self.declare_parameter("attempts", 20).value  # so often a way is tried
         self.pause = self.declare_parameter("pause", 2.0).value  # seconds between two attempts
+        self.charged_within = self.declare_parameter("charged_within", 60.0).value  # seconds in the dock
         self.nav2 = ActionClient(self, NavigateToPose, "navigate_to_pose")
         self.costmap = self.create_client(ClearEntireCostmap, "global_costmap/clear_entirely_global_costmap")
         self.blackboard = py_trees.blackboard.Client(name="patrol")
@@ -117,13 +118,14 @@ class Patrol(Node):
         """Whatever the robot is doing: when the battery is low, it charges until the battery is full."""
         enough = ComparisonExpression("battery", LOW, operator.gt)
         full = ComparisonExpression("battery", FULL, operator.ge)
+        charge = py_trees.behaviours.WaitForBlackboardVariableValue("Until full", full)
         recharge = py_trees.composites.Sequence(
             "Recharge",
             memory=True,
             children=[
                 self.navigate_to("dock", DOCK),
                 Report("In the dock", lambda: self.get_logger().info("dock")),
-                py_trees.behaviours.WaitForBlackboardVariableValue("Until full", full),
+                py_trees.decorators.Timeout("A full battery", charge, self.charged_within),
                 Report("Charged", self.charged),
             ],
         )

@@ -25,6 +25,7 @@ ROUNDS = 4
 PARAMETERS = {
     "attempts": 20,  # to reach a place
     "pause": 2.0,  # seconds between two attempts
+    "charged_within": 60.0,  # seconds in the dock
 }
 BATTERY_LOW, BATTERY_OK, HAS_NEXT, END = "battery_low", "battery_ok", "has_next", "end"
 
@@ -86,6 +87,7 @@ def leave(blackboard):
 
 def dock(blackboard):
     yasmin.YASMIN_LOG_INFO("dock")
+    blackboard["docked_at"] = time.monotonic()
     return SUCCEED
 
 
@@ -111,7 +113,9 @@ def create_cleaning(blackboard):
     house.add_state("DRIVING_TO_DOCK", drive, {SUCCEED: "DOCKING", CANCEL: "DRIVING_TO_DOCK", ABORT: ABORT})
     house.add_state("DOCKING", CbState([SUCCEED], dock), {SUCCEED: "CHARGING"})
     house.add_state(
-        "CHARGING", ChargeState(), {CHARGED: "RETURNING", CHARGING: "CHARGING", CANCEL: "CHARGING"}
+        "CHARGING",
+        ChargeState(),
+        {CHARGED: "RETURNING", CHARGING: "CHARGING", CANCEL: "CHARGING", ABORT: ABORT},
     )
     house.add_state("RETURNING", CbState([SUCCEED], end_charging), {SUCCEED: "CHECKING_BATTERY"})
     return house
@@ -123,7 +127,7 @@ def main():
     blackboard = Blackboard({"places": [*PLACES] * ROUNDS})
     outcome = create_cleaning(blackboard)(blackboard)
     if outcome != SUCCEED:
-        yasmin.YASMIN_LOG_ERROR(f"I need help: {blackboard['pose']} cannot be reached")
+        yasmin.YASMIN_LOG_ERROR(f"I need help: {blackboard['pose']} or a full battery cannot be reached")
     rclpy.shutdown()
     sys.exit(outcome != SUCCEED)
 

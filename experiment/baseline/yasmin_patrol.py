@@ -2,6 +2,7 @@
 to the corner that the robot was heading for."""
 
 import sys
+import time
 
 import rclpy
 import yasmin
@@ -15,6 +16,7 @@ DOCK = (1.0, 1.0, 0.0)
 PARAMETERS = {
     "attempts": 20,  # to reach a place
     "pause": 2.0,  # seconds between two attempts
+    "charged_within": 60.0,  # seconds in the dock
     "shift": 10,  # recharges after which it ends
 }
 BATTERY_LOW, BATTERY_OK, HAS_NEXT, END = "battery_low", "battery_ok", "has_next", "end"
@@ -36,6 +38,7 @@ def arrive(blackboard):
 
 def dock(blackboard):
     yasmin.YASMIN_LOG_INFO("dock")
+    blackboard["docked_at"] = time.monotonic()
     return SUCCEED
 
 
@@ -66,7 +69,9 @@ def create_patrol(blackboard):
     patrol.add_state("DRIVING_TO_DOCK", drive, {SUCCEED: "DOCKING", CANCEL: "DRIVING_TO_DOCK", ABORT: ABORT})
     patrol.add_state("DOCKING", CbState([SUCCEED], dock), {SUCCEED: "CHARGING"})
     patrol.add_state(
-        "CHARGING", ChargeState(), {CHARGED: "RETURNING", CHARGING: "CHARGING", CANCEL: "CHARGING"}
+        "CHARGING",
+        ChargeState(),
+        {CHARGED: "RETURNING", CHARGING: "CHARGING", CANCEL: "CHARGING", ABORT: ABORT},
     )
     patrol.add_state("RETURNING", CbState([SUCCEED], end_charging), {SUCCEED: "CHECKING_BATTERY"})
     return patrol
@@ -78,7 +83,7 @@ def main():
     blackboard = Blackboard({"corner": 0, "recharges": 0})
     outcome = create_patrol(blackboard)(blackboard)
     if outcome != SUCCEED:
-        yasmin.YASMIN_LOG_ERROR(f"I need help: {blackboard['pose']} cannot be reached")
+        yasmin.YASMIN_LOG_ERROR(f"I need help: {blackboard['pose']} or a full battery cannot be reached")
     rclpy.shutdown()
     sys.exit(outcome != SUCCEED)
 

@@ -1,6 +1,7 @@
 """States that the patrol and the house cleaning of YASMIN share: to drive by Nav2, to pause, to charge."""
 
 import math
+import time
 from threading import Event
 
 from nav2_msgs.action import NavigateToPose
@@ -61,20 +62,23 @@ class PauseState(State):
 
 
 class ChargeState(MonitorState):
-    """Looks at the next message of the battery."""
+    """Looks at the next message of the battery; aborts if it takes too long until it is full."""
 
     def __init__(self):
         super().__init__(
             BatteryState,
             "battery_state",
-            [CHARGED, CHARGING],
+            [CHARGED, CHARGING, ABORT],
             self.look,
             qos=qos_profile_sensor_data,
             msg_queue=1,
         )
 
     def look(self, blackboard, message):
-        return CHARGED if message.percentage * 100 >= FULL else CHARGING
+        if message.percentage * 100 >= FULL:
+            return CHARGED
+        waited = time.monotonic() - blackboard["docked_at"]
+        return CHARGING if waited < blackboard["charged_within"] else ABORT
 
 
 class Drive(StateMachine):

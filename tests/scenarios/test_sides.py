@@ -50,7 +50,7 @@ def test_baselines_declare_the_policies(program: Path) -> None:
 
 @pytest.mark.parametrize("name", OVER_NAV2)
 def test_trees_have_the_policies_of_attempts(name: str) -> None:
-    assert {"attempts", "pause"} <= dict(declared(SCENARIOS[name].baseline)).keys()
+    assert {"attempts", "pause", "charged_within"} <= dict(declared(SCENARIOS[name].baseline)).keys()
 
 
 @pytest.mark.parametrize("name", OVER_NAV2)

@@ -28,7 +28,7 @@ def test_the_parameters_of_the_machine_are_the_policies(name: str) -> None:
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "PARAMETERS"
     ]
     parameters.pop("shift", None)  # which runs of the experiment set
-    assert parameters == {policy: POLICIES[policy] for policy in ("attempts", "pause")}
+    assert parameters == {policy: POLICIES[policy] for policy in ("attempts", "pause", "charged_within")}
 
 
 @pytest.mark.slow
