@@ -119,7 +119,7 @@ def against(outcomes: Runs) -> str:
 
 
 def agreement(virtual: Runs, real: Runs) -> str:
-    """Return how the runs on both clocks agree, or that there are none."""
+    """Return how often the runs on both clocks agree; without runs on real ROS 2, say so."""
     if not real:
         return "This was not run."
     return f"{sentences.agreeing(virtual, real)}\n\n{as_markdown(tables.agreement_table(virtual, real))}"
