@@ -83,7 +83,7 @@ def test_kinds_and_damage_against_the_agents_are_listed_without_a_verdict() -> N
     ]
 
 
-def test_a_battery_that_is_meant_to_run_empty_is_no_damage() -> None:
+def test_a_battery_that_is_meant_to_run_empty_does_not_count_as_damage() -> None:
     empty = [each._replace(scenario="fake_battery", kind="late") for each in square(AGENTS, done=40)]
     drained = [each._replace(damage=Damage(0, True, 0)) for each in empty]
     assert tables.against_table(drained + [each._replace(side=BASELINE) for each in empty]).rows == ()
