@@ -87,7 +87,7 @@ def disturbance(scenario: str, seed: int, draw: int = 0) -> Disturbance:
     effect = {**KINDS, **FURTHER_KINDS}[kind]
     dose = round(source.uniform(effect.least, effect.most), 3)
     share = round(source.uniform(0.05, effect.latest), 3) if effect.latest else 0.0
-    begins = f"after: {{metres: {share * where.way:.2f}}}" if share else "at: 0"
+    begins = f"after: {{metres: {share * where.way:.2f}}}" if share else effect.begins
     faults = [
         f"  f{number}: {{{each}, {begins}}}" for number, each in enumerate(effect.faults(dose, source, where))
     ]
@@ -210,7 +210,8 @@ class Kind(NamedTuple):
         faults: makes the entries of the fault file from the dose, without the moment at which they begin.
         possible: whether a scenario can have it.
         least, most: range of the dose.
-        latest: greatest share of the way at which it strikes; 0 if it begins with the run.
+        latest: greatest share of the way at which it strikes; 0 if it strikes at another moment.
+        begins: that moment; by default the begin of the run.
     """
 
     faults: Callable[[float, Draw, Surroundings], list[str]]
@@ -218,6 +219,7 @@ class Kind(NamedTuple):
     least: float
     most: float
     latest: float = 0.8
+    begins: str = "at: 0"
 
 
 KINDS: Mapping[str, Kind] = {
@@ -231,9 +233,12 @@ KINDS: Mapping[str, Kind] = {
 }
 """The kinds of the protocol."""
 
+SOON_LOW = "after: {battery: 25}"
+"""A little before the robot drives to its dock, where it feels what is wrong with that."""
+
 FURTHER_KINDS: Mapping[str, Kind] = {
-    "dead_dock": Kind(_dead_dock, _recharges, 30.0, 90.0, latest=0.5),
-    "wrong_dock": Kind(_wrong_dock, _recharges, 30.0, 90.0, latest=0.5),
+    "dead_dock": Kind(_dead_dock, _recharges, 30.0, 90.0, latest=0.0, begins=SOON_LOW),
+    "wrong_dock": Kind(_wrong_dock, _recharges, 30.0, 90.0, latest=0.0, begins=SOON_LOW),
     "dirty_contact": Kind(_dirty_contact, _recharges, 0.2, 0.6, latest=0.0),
     "lost_localisation": Kind(_lost_localisation, _drives, -180.0, 180.0, latest=0.5),
     "person_in_the_way": Kind(_person_in_the_way, _drives, 30.0, 90.0, latest=0.5),
