@@ -60,7 +60,7 @@ SURROUNDINGS: Mapping[str, Surroundings] = {
     "house_cleaning": Surroundings(
         190.0, 32.0, (0.0, 0.0, 2.0, 2.0), ("living_room", "bathroom"), recharges=True, navigates=True
     ),
-    "fetch": Surroundings(40.0, 9.0, (-2.0, -1.0, 2.0, 1.0), grips=True),
+    "fetch": Surroundings(40.0, 7.5, (-2.0, -1.0, 2.0, 1.0), grips=True),
 }
 
 
