@@ -45,5 +45,5 @@ def test_a_service_of_the_world_answers(tmp_path: Path) -> None:
     assert "ClearEntireCostmap_Response" in answered
 
 
-def test_a_service_that_nobody_offers_is_not_ready_and_does_not_answer(tmp_path: Path) -> None:
+def test_a_service_without_a_server_is_not_ready_and_does_not_answer(tmp_path: Path) -> None:
     assert lines_of("no_such_costmap/clear", tmp_path) == ["[caller] ready: False"]
