@@ -8,7 +8,7 @@
 #                    make mutants MUTANTS="artifacts/robots --sample 0"   all changes of one package
 # make bench         benchmarks, beside other engines, in about 10 minutes; rewrites docs/benchmarks.md
 #                    make bench BENCH=--quick   about 3 minutes, writes nothing; JASON=/path/to/jason adds Jason
-# make experiment    all runs of docs/experiment.md, in about half an hour; rewrites their record, the page and its pictures
+# make experiment    all runs of docs/experiment.md, in about 25 minutes; rewrites their record, the page and its pictures
 # make reference     reference pages and pictures generated from the code
 # make release       wheel, source distribution and bill of materials (CycloneDX) in dist/, the same on every machine
 #
