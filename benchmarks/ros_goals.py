@@ -8,6 +8,7 @@ watch the count. On a real graph the run is a process of its own, and so is this
 
 import argparse
 import asyncio
+import gc
 import json
 import os
 import resource
@@ -26,6 +27,7 @@ from jacaros import Mas
 from jacaros.robots.ros.open import open_backend
 from jacaros.robots.ros.qos import LATCHED
 from jacaros.runtime.clock import clock_of
+from jacaros.runtime.mas.launch import GARBAGE_THRESHOLD
 from jacaros.serving.ros.door import RosDoor
 
 ACHIEVE = "jacaros_interfaces/action/Achieve"
@@ -144,6 +146,8 @@ async def in_memory(given: argparse.Namespace) -> None:
     """Measure in one process."""
     async with Mas(world="none", on_log=lambda *_: None) as mas:
         mas.add_agent("robot", PROGRAM)
+        gc.set_threshold(GARBAGE_THRESHOLD, 20, 100)  # as `jacaros run` does
+        gc.freeze()
         RosDoor(mas.system)
         nodes = [mas.system.ros.companion(f"watcher_{number}") for number in range(max(1, given.watchers))]
         await measure(nodes, given)
