@@ -157,7 +157,7 @@ def test_an_internal_error_prints_a_traceback_and_the_command(folder: Path, outc
 NOT_FOR_A_LONE_PROGRAM = (
     # other people's: robots, worlds, pictures
     *("msgspec", "numpy", "rosbags", "rich", "ruamel", "rclpy", "rospy", "yaml"),
-    *("starlette", "uvicorn", "anyio", "h11", "prompt_toolkit", "mcp", "mcp_types"),
+    *("starlette", "uvicorn", "anyio", "h11", "httptools", "prompt_toolkit", "mcp", "mcp_types"),
     # Python's own that are slow to load
     *("argparse", "decimal", "difflib", "http.server", "importlib.metadata", "importlib.resources"),
     *("multiprocessing", "sqlite3", "tempfile", "unittest", "xml", "zipfile"),
