@@ -63,7 +63,7 @@ def hypothesis_table(outcomes: Runs, name: str) -> Table:
 
 
 def outcome_table(outcomes: Runs) -> Table:
-    """A row for each side of each scenario: its three outcomes, the time until a failing program says so, and the damage."""
+    """A row for each side of each scenario: its outcomes, the time until a failing program says so, and the damage."""
     rows: list[tuple[Cell, ...]] = []
     for scenario, side, runs in _by_side(of_protocol(outcomes), WHOLE):
         told = [each.told for each in runs if each.told is not None]

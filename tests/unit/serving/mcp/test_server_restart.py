@@ -1,4 +1,4 @@
-"""A run that serves ends and starts again: clients get an error, come back with their tokens, and no goal is pursued twice."""
+"""A run that serves ends and starts again: clients get an error and come back, and no goal is pursued twice."""
 
 import asyncio
 import json
@@ -120,7 +120,9 @@ async def given_over_mcp(url: str, number: int) -> str:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("end", [signal.SIGTERM, signal.SIGKILL])
-def test_clients_get_an_error_come_back_and_no_goal_is_pursued_twice(end: signal.Signals, tmp_path: Path) -> None:
+def test_clients_get_an_error_come_back_and_no_goal_is_pursued_twice(
+    end: signal.Signals, tmp_path: Path
+) -> None:
     tokens = tmp_path / "tokens.yaml"
     tokens.touch(0o600)
     tokens.write_text("".join(f"{t.split('-')[0]}: {{token: {t}, roles: [user]}}\n" for t in (ANNA, MODEL)))
