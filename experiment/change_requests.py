@@ -22,6 +22,10 @@ CHANGES = Path(__file__).parent / "changes"
 REQUESTS = ("add_a_room", "add_an_emergency_stop", "add_a_second_robot")
 """The requests by the names of their folders."""
 
+STUDY = Path(__file__).parent / "study" / "requests"
+STUDY_REQUESTS = ("change_the_order", "charge_before_the_last_round")
+"""Two more, for the study with users; they are not counted."""
+
 SIDES = ("agents", "baseline")
 _PRESENT = SCENARIOS["house_cleaning"]
 _PRESENT = _PRESENT._replace(project=_PRESENT.project.with_name("house_cleaning.jcm"))
@@ -61,8 +65,13 @@ def table() -> list[Row]:
 
 def title(request: str) -> str:
     """Return the heading of a request."""
-    first = (CHANGES / request / "request.md").read_text(encoding="utf-8").partition("\n")[0]
+    first = (folder_of(request) / "request.md").read_text(encoding="utf-8").partition("\n")[0]
     return first.removeprefix("# ")
+
+
+def folder_of(request: str) -> Path:
+    """Return the folder of a request."""
+    return (STUDY if request in STUDY_REQUESTS else CHANGES) / request
 
 
 def cost(request: str, side: str) -> Cost:
@@ -74,7 +83,7 @@ def cost(request: str, side: str) -> Cost:
 
 def diff_of(request: str, side: str) -> Path:
     """Return the diff of a side."""
-    return CHANGES / request / f"{side}.diff"
+    return folder_of(request) / f"{side}.diff"
 
 
 def code_lines(diff: str, sign: str) -> int:
@@ -110,7 +119,7 @@ def changed(request: str, folder: Path) -> Scenario:
     """Apply both diffs of a request to copies of the present programs.
 
     Args:
-        request: one of `REQUESTS`.
+        request: one of `REQUESTS` or `STUDY_REQUESTS`.
         folder: for the copies; it must not have any.
 
     Returns:
@@ -125,7 +134,7 @@ def changed(request: str, folder: Path) -> Scenario:
     shutil.copy(_PRESENT.baseline, baseline)
     for side, copy in (("agents", agents), ("baseline", baseline)):
         apply(diff_of(request, side), copy)
-    world = CHANGES / request / "world.yaml"
+    world = folder_of(request) / "world.yaml"
     return _PRESENT._replace(
         project=agents / _PRESENT.project.name,
         baseline=baseline / _PRESENT.baseline.name,
@@ -153,7 +162,7 @@ def apply(diff: Path, folder: Path) -> None:
 
 def judge(request: str, result: RunResult) -> Verdict:
     """Judge a run of either side by the checker of a request."""
-    check = runpy.run_path(str(CHANGES / request / "check.py"))["check"]
+    check = runpy.run_path(str(folder_of(request) / "check.py"))["check"]
     verdict: Verdict = check(result.ground_truth)
     return verdict
 

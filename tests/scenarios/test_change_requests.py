@@ -18,6 +18,7 @@ from change_requests import (
     CHANGES,
     REQUESTS,
     SIDES,
+    STUDY_REQUESTS,
     apply,
     changed,
     code_lines,
@@ -54,7 +55,7 @@ def run_of(request: str, side: str) -> RunResult:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("side", SIDES)
-@pytest.mark.parametrize("request_name", REQUESTS)
+@pytest.mark.parametrize("request_name", [*REQUESTS, *STUDY_REQUESTS])
 def test_the_changed_program_does_what_the_request_says(request_name: str, side: str) -> None:
     result = run_of(request_name, side)
     verdict = judge(request_name, result)

@@ -17,13 +17,13 @@ FULL = 99.0
 def check(truth: GroundTruth) -> Verdict:
     """Judge a run of four rounds."""
     verdict: Verdict = house["check"](truth)
+    # The example's checker wants the robot to dock when its battery is low; here it docks once before that.
+    verdict.complaints = [each for each in verdict.complaints if not each.startswith("it docked at")]
     times = [event.time for event in truth.events_of("task")]
     if len(times) > TASKS_BEFORE:
         begin, end = times[TASKS_BEFORE - 1], times[TASKS_BEFORE]
-        charged = [each.battery for each in truth.path() if begin < each.time < end and each.charging]
-        verdict.expect(
-            max(charged, default=0.0) >= FULL, "it did not charge until full before the last round"
-        )
+        levels = [each.battery for each in truth.path() if begin < each.time < end]
+        verdict.expect(max(levels, default=0.0) >= FULL, "it did not charge until full before the last round")
     return verdict
 
 
