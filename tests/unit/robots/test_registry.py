@@ -86,13 +86,13 @@ def test_a_class_that_is_not_an_artifact_is_reported(tmp_path: Path) -> None:
 def test_several_projects_with_files_of_the_same_names_live_in_one_process(tmp_path: Path) -> None:
     finders = []
     for number in (1, 2):
-        folder = write(tmp_path / str(number), "sizes.py", f"SIZE = {number}\n")
-        text = COUNTER.format(size=0) + "\nimport sizes\nCounter.SIZE = sizes.SIZE\n"
+        folder = write(tmp_path / str(number), "magnitudes.py", f"SIZE = {number}\n")
+        text = COUNTER.format(size=0) + "\nimport magnitudes\nCounter.SIZE = magnitudes.SIZE\n"
         finders.append(type_finder(write(folder, "artifacts.py", text)))
     path = list(sys.path)
     assert [find("Counter").SIZE for find in finders] == [1, 2]  # type: ignore[attr-defined]
     assert "artifacts" not in sys.modules
-    assert "sizes" not in sys.modules
+    assert "magnitudes" not in sys.modules
     assert sys.path == path
 
 

@@ -63,12 +63,12 @@ def _written(kind: str, agent: str, text: str) -> str:
 
 
 @contextmanager
-def _requests(offer: Offered | None = None) -> Iterator[None]:
+def _requests() -> Iterator[None]:
     """Turn errors of requests into errors of usage: exit code 1 stands for failed goals and the answer `no`."""
     try:
         yield
     except (ServiceError, Unreachable) as error:
-        raise UsageError(error_text(error, "" if offer is None else offer.form)) from None
+        raise UsageError(error_text(error)) from None
 
 
 def _request(
@@ -152,7 +152,7 @@ def achieve(words: tuple[str, ...], as_json: bool, url: str | None, token: str |
     client = client_of(url, token)
     offer, text = _request(client, GOALS, words, "!")
     pursuit = _Pursuit(client)
-    with pursuit.by_signals(), _requests(offer):
+    with pursuit.by_signals(), _requests():
         try:
             try:
                 goal = pursuit.follow(partial(client.achieve, offer.agent, text))
@@ -188,7 +188,7 @@ def ask(words: tuple[str, ...], as_json: bool, url: str | None, token: str | Non
     """  # fmt: skip
     client = client_of(url, token)
     offer, text = _request(client, QUESTIONS, words, "?")
-    with _requests(offer):
+    with _requests():
         answers = client.ask(offer.agent, text)
     click.echo(json.dumps(answers) if as_json else "\n".join(answer_lines(answers)))
     return 0 if answers else 1
@@ -205,7 +205,7 @@ def tell(words: tuple[str, ...], untell: bool, as_json: bool, url: str | None, t
     """Tell BELIEF to an agent that takes it from callers."""
     client = client_of(url, token)
     offer, text = _request(client, TELLS, words, "+")
-    with _requests(offer):
+    with _requests():
         client.tell(offer.agent, text, untell)
     if as_json:
         click.echo(json.dumps({"agent": offer.agent, "untold" if untell else "told": text}))

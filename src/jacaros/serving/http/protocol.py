@@ -55,6 +55,11 @@ class LimitedConnection(_Impatient, AutoHTTPProtocol):  # type: ignore[valid-typ
         idle: the connections that wait for the header of their first request, the oldest first.
     """
 
+    connections: Any  # what both kinds of connections of uvicorn have
+    scope: Any
+    cycle: Any
+    loop: Any
+
     def __init__(self, *arguments: Any, idle: "dict[LimitedConnection, None]", **options: Any) -> None:
         super().__init__(*arguments, **options)
         self.logger = _QUIET

@@ -107,7 +107,7 @@ class Dialogue:
             else:
                 self._client.tell(offer.agent, text, untell=sign == "-")
         except ServiceError as error:
-            self._show(error_text(error, offer.form))
+            self._show(error_text(error))
             return False
         return True
 

@@ -71,17 +71,9 @@ def event_text(event: Json, goal_name: str = "") -> str:
     return f"[{event['agent']}] {told}"
 
 
-def error_text(error: JacarosError, form: str = "") -> str:
-    """Return an error of a request.
-
-    Args:
-        error: the error.
-        form: what the agent offers under the name of the request.
-    """
+def error_text(error: JacarosError) -> str:
+    """Return an error of a request."""
     told = str(error)
-    code = error.code if isinstance(error, ServiceError) else ""
-    if code == "unauthorized":
+    if isinstance(error, ServiceError) and error.code == "unauthorized":
         told += f"\n{help_line(_TOKEN_HELP)}"
-    elif code == "not_offered" and form:
-        told += f"\n{help_line(f'it is offered as {form}')}"
     return told if told.startswith("error: ") else f"error: {told}"

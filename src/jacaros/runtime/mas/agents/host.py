@@ -1,7 +1,7 @@
 """The host of a mind in its run (Jason's agent architecture), and the coroutines of its internal actions."""
 
 import asyncio
-from collections.abc import Callable, Coroutine, Sequence
+from collections.abc import Awaitable, Callable, Coroutine, Sequence
 from functools import partial
 from random import Random
 from typing import TYPE_CHECKING, Any, Protocol
@@ -322,7 +322,7 @@ class AgentCoroutine:
         self._ended(None if error is not None else task.result(), error)
 
 
-async def without_exit(work: Coroutine[Any, Any, Any]) -> Any:
+async def without_exit(work: Awaitable[Any]) -> Any:
     """Await a coroutine. Turn its ``sys.exit``, which would end the event loop, into an error."""
     try:
         return await work
