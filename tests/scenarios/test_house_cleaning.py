@@ -97,9 +97,9 @@ def aborted(seconds: float) -> str:
 @pytest.mark.slow
 def test_over_nav2_it_comes_back_to_a_room_that_was_out_of_reach() -> None:
     result = run_project(OVER_NAV2, faults=aborted(60), seconds=LONGEST)
-    assert [line[:60] for line in result.lines] == [
-        "[robot] I need help, or come back later: place 1 is out of r"
-    ]
+    help, *arrivals = result.lines
+    assert help.startswith("[robot] I need help, or come back later: place 1 is out of reach")
+    assert arrivals[:4] == ["[robot] room 2", "[robot] room 3", "[robot] hallway", "[robot] room 1"]
     tasks_done = [event.data["task"] for event in tasks(result.ground_truth)]
     assert tasks_done.count("vacuum carpet living_room") == 4
     assert result.exit_code == 0
