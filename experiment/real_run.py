@@ -1,4 +1,4 @@
-"""Run the pair of the experiment again on real ROS 2, with the world in a process of its own and the clock of the wall.
+"""Run the pair of the experiment again on real ROS 2, with the world in a process of its own and the wall clock.
 
     .venv-ros2-jazzy/bin/python experiment/real_run.py square patrol --seeds 40 --workers 2
 

@@ -74,7 +74,7 @@ def kept(new: Sequence[Outcome]) -> list[Outcome]:
     """
     missing = [side for side in NEEDS if not can_run(side)]
     for side in missing:
-        print(f"note: the runs of the {side} stay as recorded, as there is no module {NEEDS[side]}")
+        print(f"note: the runs of the {side} stay as recorded, because the module {NEEDS[side]} is missing")
     draws = {(each.scenario, each.seed): each.draw for each in new}
     return [
         each
