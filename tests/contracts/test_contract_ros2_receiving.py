@@ -77,6 +77,42 @@ async def test(backend, publisher, hear):
     )
 
 
+def test_messages_that_wait_together_are_delivered_in_the_order_in_which_they_came(
+    domain: dict[str, str],
+) -> None:
+    passes(
+        domain,
+        """
+import threading
+genuine, held = ros2_receiving.take_message, threading.Event()
+
+def slow(handle, kind):
+    found = genuine(handle, kind)
+    if found and found[0].data == "wait":
+        held.wait(10)
+    return found
+
+async def test(backend, publisher, hear):
+    backend.subscription("/a", STRING, hear)
+    backend.subscription("/b", STRING, hear)
+    other = backend.publisher("/b", STRING)
+    await talk(publisher, "a")
+    await talk(other, "b")
+    heard.clear()
+    ros2_receiving.take_message = slow
+    publisher.publish({"data": "wait"})
+    await clock.sleep(0.1)
+    other.publish({"data": "first"})
+    await clock.sleep(0.1)
+    publisher.publish({"data": "second"})
+    await clock.sleep(0.1)
+    held.set()
+    await until(lambda: "second" in heard and "first" in heard)
+    assert heard[-2:] == ["first", "second"], heard
+""",
+    )
+
+
 def test_rclpys_executor_takes_over_where_the_wait_set_is_another_one(domain: dict[str, str]) -> None:
     passes(
         domain,

@@ -51,7 +51,9 @@ def known(written: Written, needed: str, interfaces: Interfaces, problems: list[
     try:
         interfaces.fields(needed)
     except UnknownInterface as error:
-        help = suggestion(written.text, known_types(written.text.split("/")[1]), str(error), 2)
+        others = known_types(written.text.split("/")[1])
+        # A type that comes with JaCaROS, but not with the robot's middleware, is not misspelt.
+        help = str(error) if written.text in others else suggestion(written.text, others, str(error), 2)
         problems.append(written.place.problem(f"the type `{written.text}` {UNCERTAIN}", help))
         return False
     return True

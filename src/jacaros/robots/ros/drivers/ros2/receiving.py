@@ -9,7 +9,7 @@ executor takes over.
 """
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import ExitStack, suppress
 from importlib import import_module
 from typing import Any
@@ -76,6 +76,11 @@ class NotForExecutor(CallbackGroup):  # type: ignore[misc]
 def take_message(handle: Any, kind: Any) -> Any:
     """Take a message of class *kind* with its metadata; None if another receiver has taken it."""
     return handle.take_message(kind, False)
+
+
+def _received(arrived: tuple[Take, Any, Mapping[str, Any]]) -> int:
+    """Return when a message reached this computer; 0 if the middleware does not say."""
+    return arrived[2]["received_timestamp"] or 0
 
 
 class Receiver:
@@ -200,14 +205,17 @@ class Receiver:
             waiting.wait(-1)
             ready = [sources[pointer] for pointer in waiting.get_ready_entities("subscription")]
             arrived = [
-                (take, found[0])
+                (take, *found)
                 for handle, kind, take in ready
                 if (found := self._taken(handle, kind)) is not None
             ]
+            if len(arrived) > 1:
+                # Messages that wait together are in the order of the subscriptions: "stop" must not overtake "go".
+                arrived.sort(key=_received)
             happened = [(event, event.take_data()) for event in events if event.is_ready(waiting)]
             # Do everything here first: once the loop is awake, it shares the interpreter with this thread.
             arm()
-            for take, message in arrived:
+            for take, message, _ in arrived:
                 take(message)
             for event, data in happened:
                 if data:
