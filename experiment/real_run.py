@@ -38,21 +38,28 @@ FIRST_DOMAIN = 41
 BEGIN = 60.0
 """Seconds in which the world must have opened, and a program that was interrupted must end."""
 
-SOURCES = os.pathsep.join([str(FOLDER.parent / "src"), str(FOLDER / "stand_ins")])
+SOURCE = str(FOLDER.parent / "src")
+BESIDE = os.pathsep.join([SOURCE, str(FOLDER / "stand_ins")])
+"""Where baselines find modules: they import packages of ROS 2 that no package index has, with what they use of them."""
 
 
 class Program:
     """A process, its output, and when it printed each line.
 
+    Args:
+        command: the program and its arguments.
+        domain: number of its ROS 2 graph.
+        path: where it finds modules.
+
     Attributes:
         timed: seconds since the Unix epoch, and the line.
     """
 
-    def __init__(self, command: list[str], domain: int) -> None:
+    def __init__(self, command: list[str], domain: int, path: str = SOURCE) -> None:
         self.timed: list[tuple[float, str]] = []
         self._process = subprocess.Popen(
             command,
-            env=os.environ | environment(domain),
+            env=os.environ | environment(domain, path),
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -86,14 +93,14 @@ class Program:
         return code
 
 
-def environment(domain: int) -> Mapping[str, str]:
+def environment(domain: int, path: str) -> Mapping[str, str]:
     """Return the variables of a graph of its own on this machine."""
     return {
         "ROS_DOMAIN_ID": str(domain),
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
         "RCUTILS_LOGGING_BUFFERED_STREAM": "0",
         "PYTHONUNBUFFERED": "1",
-        "PYTHONPATH": SOURCES,
+        "PYTHONPATH": path,
     }
 
 
@@ -118,12 +125,14 @@ def opened(world: str | Path, setting: Setting, domain: int) -> Iterator[tuple[P
 def run(setting: Setting, side: str, domain: int) -> RunResult:
     """Make one run."""
     with opened(world_of(setting.scenario, setting.folder), setting, domain) as (file, epoch):
-        program = Program(command_of(setting, side), domain)
+        program = Program(command_of(setting, side), domain, SOURCE if side == AGENTS else BESIDE)
         code = program.end(setting.limit)
         ended = time.time() - epoch
         time.sleep(1.0)  # without commands a robot stops in half a second
     timed = [(moment - epoch, line) for moment, line in program.timed]
     lines = [re.sub(r"^\[INFO\] \[\d+\.\d+\] \[(\w+)\]: ", r"[\1] ", line) for _, line in timed]
+    # The world is there before the program: its battery has begun to run down when the program reports it full.
+    lines = [re.sub(r" \d+ %: Full Battery$", " 100 %: Full Battery", line) for line in lines]
     return RunResult(lines, [], timed, code, ended, GroundTruth.read(file))
 
 
@@ -156,6 +165,8 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=len(SEEDS) // 5, help="number of seeds (default 40)")
     parser.add_argument("--workers", type=int, default=1, help="runs at the same time (default 1)")
     given = parser.parse_args()
+    # A shell lets programs in the background ignore it, and so would those that are started here and interrupted.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     draws = {(each.scenario, each.seed): each.draw for each in record.read(record.VIRTUAL)}
     known = {each[:3]: each for each in record.read(record.ROS2)}
     domains: SimpleQueue[int] = SimpleQueue()
