@@ -1,5 +1,6 @@
 """Mapping files compared with message types: mismatches are reported with location and help."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
@@ -7,7 +8,9 @@ from mapped_lab import mistakes
 
 from jacaros.robots.mapping.checking import check_mapping
 from jacaros.robots.mapping.file import MappingError, read_mapping
-from jacaros.robots.mapping.interfaces import stored_interfaces
+from jacaros.robots.mapping.interfaces import StoredInterfaces, stored_interfaces
+from jacaros.robots.ros.errors import UnknownInterface
+from jacaros.robots.ros.fields import FieldType
 from jacaros.runtime.mas.checks.observables import Observables
 from jacaros.runtime.mas.mappings import check_mapping_file
 
@@ -135,6 +138,23 @@ def test_types_known_only_to_the_robot_are_marked() -> None:
     [found] = told("properties: {a: {topic: t, type: acme_msgs/msg/Gripper}}")
     assert "the type `acme_msgs/msg/Gripper` is not known here" in found
     assert "interface_paths" in found
+
+
+class WithoutNav2(StoredInterfaces):
+    """The interfaces of a robot whose middleware lacks the actions of Nav2."""
+
+    def fields(self, type_name: str) -> Mapping[str, FieldType]:
+        if type_name.startswith("nav2_msgs/"):
+            raise UnknownInterface(f"{type_name} is not installed")
+        return super().fields(type_name)
+
+
+def test_a_type_that_only_the_robot_lacks_is_not_called_misspelt() -> None:
+    with pytest.raises(MappingError) as wrong:
+        check_mapping(read_mapping(full("GOAL goal: {pose.pose.position.x: $v}")), WithoutNav2())
+    assert "help: nav2_msgs/action/NavigateToPose" in str(wrong.value)
+    assert "is not installed" in str(wrong.value)
+    assert "did you mean" not in str(wrong.value)
 
 
 @pytest.mark.parametrize(
