@@ -66,6 +66,7 @@ _MODULES = {
     "jacaros.agents.python.python_agent": "PythonAgent",
     "jacaros.artifacts.env.errors": "OperationFailed",
     "jacaros.artifacts.env.values": "Atom Out Structure",
+    "jacaros.notebook.magics": "load_ipython_extension",
     "jacaros.runtime.errors": "InternalError JacarosError UsageError",
     "jacaros.runtime.mas.deployment": "ProjectError",
     "jacaros.runtime.mas.embedding.waits": "AgentEnded GoalFailed RunEnded UnknownAgent",

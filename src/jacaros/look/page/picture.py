@@ -33,6 +33,8 @@ _STYLE = """
 """
 _MARGIN = 0.15
 _PIECES = 160
+_STEPS, _LONGEST = 240, 20.0
+"""Number of places of a moving robot, about, and the seconds in which it passes them, at most."""
 _RADIUS = 0.17
 """Radius in metres of a robot known only from a real graph."""
 _PATH_COLOURS = ("#1f6f8b", "#b4572e", "#6b5aa8", "#3f7d3a", "#a83e6b", "#7a6a1e")
@@ -47,8 +49,8 @@ def write_picture(recording: Recording, path: str | Path, width: int = 640) -> N
     Path(path).write_text(picture_svg(recording, width), encoding="utf-8", newline="\n")
 
 
-def picture_svg(recording: Recording, width: int = 640) -> str:
-    """Return the SVG text."""
+def picture_svg(recording: Recording, width: int = 640, moving: bool = False) -> str:
+    """Return the SVG text; if *moving*, robots drive along their paths again and again."""
     sheet, state = _Sheet(recording, width), SceneState(recording.drawing)
     for event in recording.events:
         state.event(*event)
@@ -63,7 +65,7 @@ def picture_svg(recording: Recording, width: int = 640) -> str:
         *_objects(sheet, recording.drawing, state),
         *_people(sheet, state.people(recording.duration)),
         *_room_names(sheet, recording),
-        *_robots(sheet, recording),
+        *_robots(sheet, recording, moving),
     ]
     title = html.escape(str(recording.drawing["name"]))
     return (
@@ -246,7 +248,7 @@ def _place_for(sheet: _Sheet, recording: Recording, area: Any, width: float) -> 
     return round(x, 1), round(y, 1)
 
 
-def _robots(sheet: _Sheet, recording: Recording) -> Iterator[str]:
+def _robots(sheet: _Sheet, recording: Recording, moving: bool) -> Iterator[str]:
     described = recording.drawing["robots"]
     rows: Sequence[Pose | RobotState] = [Pose(*robot["pose"]) for robot in described if "pose" in robot]
     if recording.frames:
@@ -258,14 +260,38 @@ def _robots(sheet: _Sheet, recording: Recording) -> Iterator[str]:
         edge, inside = (
             (f' style="stroke:{colour}"', f' style="fill:{colour}"') if len(described) > 1 else ("", "")
         )
+        motion, kind = "", ""
+        if moving and recording.frames:
+            motion, kind = _motion(sheet, recording, number, size), f' class="moving-{number}"'
         yield (
-            f'<g transform="translate({x} {y}) rotate({turn}) scale({size})">'
+            f'{motion}<g{kind} transform="translate({x} {y}) rotate({turn}) scale({size})">'
             f'<circle class="robot" r="1" stroke-width=".12"{edge}/>'
             f'<path class="heading" d="M.72 0L-.38 .5L-.12 0L-.38-.5Z"{inside}/></g>'
         )
         if len(described) > 1:
             name = html.escape(str(robot["name"]))
             yield f'<text class="name" text-anchor="middle" x="{x}" y="{y - size - 8:.1f}">{name}</text>'
+
+
+def _motion(sheet: _Sheet, recording: Recording, number: int, size: float) -> str:
+    """Return the style sheet that moves a robot; those who want no motion see it where it was at the end."""
+    rows, times = recording.rows()[number], [frame.t for frame in recording.frames]
+    kept = sorted({*range(0, len(rows), max(1, len(rows) // _STEPS)), len(rows) - 1})
+    span, turn, last = recording.duration or 1.0, 0.0, rows[0].yaw
+    lines = []
+    for index in kept:
+        row = rows[index]
+        turn += math.remainder(row.yaw - last, math.tau)  # the short way round
+        last = row.yaw
+        degrees = round(-math.degrees(rows[0].yaw + turn), 1)
+        place = f"translate({sheet.x(row.x)}px,{sheet.y(row.y)}px) rotate({degrees}deg) scale({size})"
+        lines.append(f"{100 * times[index] / span:.2f}%{{transform:{place}}}")
+    lines.append(lines[-1].replace(lines[-1].partition("{")[0], "100%", 1))
+    name = f"moving-{number}"
+    return (
+        f"<style>@keyframes {name}{{{''.join(lines)}}} @media (prefers-reduced-motion:no-preference){{"
+        f".{name}{{animation:{name} {min(span, _LONGEST):.1f}s linear infinite}}}}</style>"
+    )
 
 
 STOPS = ((74, 98, 190), (38, 146, 158), (120, 172, 84), (226, 160, 48), (205, 84, 60))
