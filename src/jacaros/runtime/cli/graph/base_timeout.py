@@ -180,7 +180,7 @@ def verdict(ceased: Ceased) -> str:
     if ceased.seconds is None:
         return (
             f"error: the base was still driving {WATCHED:g} s after the last command, {way}, and was sent zero velocity\n"
-            "  = help: start `jacaros guard` on the robot's computer; see docs/how-to/guard_from_the_robots_computer.md"
+            "  = help: start `jacaros guard` on the robot's computer; see docs/how-to/guard_a_robot.md"
         )
     text = f"the base stood {ceased.seconds:.2f} s after the last command, {way}"
     if ceased.seconds > GUARDED:
