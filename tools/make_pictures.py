@@ -64,7 +64,7 @@ REPLAYS = {
     ),
     "page_phone.png": Shot(EMPTY, None, (390, 844)),
 }
-"""Pictures of replays; ``watch.asl`` is in ``docs/how-to/page.md``."""
+"""Pictures of replays; ``watch.asl`` is in ``docs/how-to/watch_a_run.md``."""
 
 
 def main() -> None:
@@ -95,7 +95,7 @@ def recorded(scratch: Path, arguments: Iterable[str]) -> Recording:
 
 def recorded_shot(scratch: Path, shot: Shot) -> Recording:
     """Run the program or project of a picture, with the program of the documentation beside it."""
-    page = (ROOT / "docs/how-to/page.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs/how-to/watch_a_run.md").read_text(encoding="utf-8")
     (scratch / "watch.asl").write_text(page.partition("```agentspeak watch.asl\n")[2].partition("```")[0])
     return recorded(scratch, shot.run)
 
