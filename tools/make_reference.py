@@ -226,31 +226,40 @@ def internal_actions() -> Iterator[str]:
     yield (ROOT / "tools" / "internal_actions.md").read_text(encoding="utf-8")
     for group in GROUPS:
         text = (ROOT / "docs" / "reference" / ACTIONS / f"{group}.md").read_text(encoding="utf-8")
-        names = re.findall(r"^## (\S+)$", text, re.MULTILINE)
+        links = dict(_described(group, text))
         yield f"## {text.partition(chr(10))[0].removeprefix('# ')}\n"
-        rows = _function_rows(group, names) if group == "functions" else _action_rows(group, names)
+        rows = _function_rows(links) if group == "functions" else _action_rows(links)
         yield "\n".join(rows) + "\n"
 
 
-def _action_rows(group: str, names: list[str]) -> Iterator[str]:
+def _described(group: str, text: str) -> Iterator[tuple[str, str]]:
+    """Yield each name that a page describes, in a section of its own or in a row of a table, and a link to it."""
+    title = ""
+    for line in text.splitlines():
+        if heading := re.fullmatch(r"## (.+)", line):
+            title = heading[1]
+        row = re.match(r"\| `([.\w]+)", line)
+        name = title if heading else row[1] if row and title[:1].isupper() else ""
+        if re.fullmatch(r"\.?[a-z][.\w]*", name):
+            anchor = re.sub(r"[^\w-]", "", title.lower().replace(" ", "-"))
+            yield name, f"[`{name}`]({group}.md#{anchor})"
+
+
+def _action_rows(links: dict[str, str]) -> Iterator[str]:
     yield "| internal action | arguments | answers | acts | in contexts |\n|---|---|---|---|---|"
-    for name in names:
+    for name, link in links.items():
         action = STANDARD[name]
         answers = "several" if action.backtracks else "one"
         acts = "yes" if action.suspends else "no"
         contexts = "no" if action.body_only else "yes"
         arguments = _arguments(action.minimum, math.inf if action.maximum is None else action.maximum)
-        yield f"| {_entry(group, name)} | {arguments} | {answers} | {acts} | {contexts} |"
+        yield f"| {link} | {arguments} | {answers} | {acts} | {contexts} |"
 
 
-def _function_rows(group: str, names: list[str]) -> Iterator[str]:
+def _function_rows(links: dict[str, str]) -> Iterator[str]:
     yield "| function | arguments |\n|---|---|"
-    for name in names:
-        yield f"| {_entry(group, name)} | {_arguments(*ARITIES[name])} |"
-
-
-def _entry(group: str, name: str) -> str:
-    return f"[`{name}`]({group}.md#{re.sub(r'[^a-zA-Z0-9_]', '', name).lower()})"
+    for name, link in links.items():
+        yield f"| {link} | {_arguments(*ARITIES[name])} |"
 
 
 def _arguments(least: float, most: float) -> str:

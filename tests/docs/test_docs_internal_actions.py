@@ -18,7 +18,14 @@ SEVERAL_ANSWERS, ACTS, NOT_IN_CONTEXTS = "*several answers*", "*acts", "not in c
 
 
 class Entry(NamedTuple):
-    """The entry of an internal action or a function: its name, its first paragraph, all of it, and where it stands."""
+    """The entry of an internal action or a function, a section or a row of a table in one.
+
+    Attributes:
+        name: the name.
+        head: the forms of its call, and what else the registry says.
+        text: its section.
+        page: the file.
+    """
 
     name: str
     head: str
@@ -31,8 +38,12 @@ def entries(pattern: str) -> Iterator[Entry]:
         if page.name == "index.md":
             continue
         for part in page.read_text(encoding="utf-8").split("\n## ")[1:]:
-            name, _, text = part.partition("\n")
-            yield Entry(name, text.strip().partition("\n\n")[0].replace("\n", " "), text, page.name)
+            title, _, text = part.partition("\n")
+            rows = re.findall(r"^\| (`([.\w]+).*?) \|", text, re.MULTILINE)
+            if title[0].isupper():
+                yield from (Entry(name, head, text, page.name) for head, name in rows)
+            else:
+                yield Entry(title, text.strip().partition("\n\n")[0].replace("\n", " "), text, page.name)
 
 
 ACTIONS = [entry for entry in entries("*.md") if entry.page != FUNCTIONS.name]
