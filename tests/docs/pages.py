@@ -9,7 +9,8 @@ What stands behind the language of a block says what becomes of it::
     ```output                      what the file before it prints (see `examples`)
     ```errors                      other output when that file is run
     ```sh                          commands that are only read: set-up, real robots
-    ```agentspeak wrong CODE       a program for which `jacaros check` tells this code, and nothing else
+    ```agentspeak wrong CODE       a program for which `jacaros check` tells this code, and nothing else;
+                                   after `// better:`, one for which it tells nothing
     ```agentspeak right CODE       one for which it tells nothing
     ```agentspeak formatted        a program as `jacaros fmt` lays it out
     ```python excerpt src/a.py     lines that stand in that file, in this order ("..." leaves some out)

@@ -2,16 +2,31 @@
 
 import json
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from pages import ROOT, Block, blocks
+from pages import ROOT, blocks
 
 from jacaros.agents.language.diagnostics import LEVELS as LEVEL_OF
 from jacaros.runtime.cli.main import call
 
 PAGE = ROOT / "docs" / "reference" / "diagnostics.md"
-EXAMPLES = [block for block in blocks(PAGE) if block.purpose.startswith(("wrong ", "right "))]
+BETTER = "// better:\n"
+
+
+def _examples() -> Iterator[tuple[str, str, str]]:
+    """Yield kind (`wrong` or `right`), code and text of each program of the page."""
+    for block in blocks(PAGE):
+        kind, _, code = block.purpose.partition(" ")
+        if kind in ("wrong", "right"):
+            text, better, right = block.text.partition(BETTER)
+            yield kind, code, text
+            if better:
+                yield "right", code, right
+
+
+EXAMPLES = list(_examples())
 OF_FILES = {
     *(
         "goal-never-posted",
@@ -48,18 +63,19 @@ def test_every_code_has_its_section_under_its_level() -> None:
 
 
 def test_every_code_has_examples() -> None:
-    purposes = {block.purpose for block in EXAMPLES}
+    shown = {(kind, code) for kind, code, _ in EXAMPLES}
     for code in set(LEVEL_OF) - OF_FILES:
-        assert f"right {code}" in purposes
-        assert f"wrong {code}" in purposes or code in TOO_LONG
+        assert ("right", code) in shown
+        assert ("wrong", code) in shown or code in TOO_LONG
 
 
-@pytest.mark.parametrize("block", EXAMPLES, ids=lambda block: block.purpose)
-def test_an_example_gives_its_code_and_nothing_else(block: Block, tmp_path, monkeypatch, capsys) -> None:
+@pytest.mark.parametrize(("kind", "code", "text"), EXAMPLES)
+def test_an_example_gives_its_code_and_nothing_else(
+    kind: str, code: str, text: str, tmp_path: Path, monkeypatch, capsys
+) -> None:
     monkeypatch.chdir(tmp_path)
     Path("other.asl").write_text("sum(X, Y, X + Y).\n", encoding="utf-8")
-    Path("example.asl").write_text(block.text, encoding="utf-8")
-    kind, _, code = block.purpose.partition(" ")
+    Path("example.asl").write_text(text, encoding="utf-8")
     assert told(capsys) == ([(code, LEVEL_OF[code])] if kind == "wrong" else [])
 
 
