@@ -1,4 +1,4 @@
-"""Contract: what the driver of docs/how-to/add_a_middleware.md does when its broker or a node dies."""
+"""Contract: what the driver of docs/reference/middleware.md does when its broker or a node dies."""
 
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,1 +1,1 @@
-"""A driver for a middleware that is not ROS: MQTT.  docs/how-to/add_a_middleware.md explains it."""
+"""A driver for a middleware that is not ROS: MQTT.  docs/reference/middleware.md explains it."""
