@@ -65,6 +65,7 @@ RUNS: dict[str, list[list[str]]] = {
         ["run", "a.asl", "--fleet", "lab", "--fleet-allow", EVIL],
     ],
     "demo": [["demo", EVIL]],
+    "new": [["new", EVIL], ["new", "robot", "--template", EVIL]],
     "mcp": [["mcp", EVIL]],
     "achieve": [["achieve", EVIL, *NOWHERE], ["achieve", EVIL, "go", *NOWHERE]],
     "ask": [["ask", EVIL, *NOWHERE], ["ask", "p(X)", "--url", EVIL, "--token", EVIL]],

@@ -15,6 +15,7 @@ from collections.abc import Mapping
 from importlib import import_module
 
 import click
+from click.shell_completion import CompletionItem
 
 from jacaros.runtime.cli.outputs import OUTPUT_GONE
 from jacaros.runtime.cli.usage import examples, in_our_form, usage_error
@@ -29,6 +30,7 @@ ENDED_BY_SIGNAL = (129, 130, 143, 149)
 _LIBRARIES = ("click", "rich", "ruamel.yaml", "websockets", "numpy")
 COMMANDS = {
     "demo": ("jacaros.runtime.cli.run:demo", "Show a robot on patrol."),
+    "new": ("jacaros.runtime.cli.new", "Make a project that runs, from a template."),
     "run": ("jacaros.runtime.cli.run", "Run an agent program or a project."),
     "mcp": ("jacaros.runtime.cli.mcp", "Run an agent program, and serve it to a language model."),
     "console": ("jacaros.runtime.cli.talking:console", "Talk to the agents of a running system."),
@@ -90,6 +92,14 @@ class CommandGroup(click.Group):
             raise usage_error(f"unknown command: `{args[0]}`", help)
         return super().resolve_command(ctx, args)
 
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+        """Complete a command without importing them all, or the file that stands for ``jacaros run FILE``."""
+        if incomplete.startswith("-"):
+            return super().shell_complete(ctx, incomplete)
+        names = (name for name in COMMANDS if name.startswith(incomplete))
+        found = [CompletionItem(name, help=COMMANDS[name][1]) for name in names]
+        return found or [CompletionItem(incomplete, type="file")]
+
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the commands without importing them."""
         with formatter.section("Commands"):
@@ -133,7 +143,8 @@ def main(arguments: list[str] | None = None) -> None:
         # A console that lacks a character, as those of cp1252 lack arrows, must not end a command.
         if isinstance(stream, io.TextIOWrapper) and stream.errors in ("strict", "backslashreplace"):
             stream.reconfigure(errors=PLAIN)
-        if stream is not None:
+        # Completion is for the shell, and click writes it as bytes.
+        if stream is not None and "_JACAROS_COMPLETE" not in os.environ:
             setattr(sys, name, Visible(stream))
     code = call(arguments)
     if code in ENDED_BY_SIGNAL and _threads_are_left():
