@@ -97,6 +97,8 @@ def parts() -> list[Part]:
     found = [
         Part("chromium", (*INSTALL, "chromium", "chromium", "chromium-browser", "google-chrome"), "install"),
         Part("mosquitto", (*INSTALL, "mosquitto", "mosquitto"), "install"),
+        Part("zsh", (*INSTALL, "zsh", "zsh"), "install"),
+        Part("fish", (*INSTALL, "fish", "fish"), "install", needs="zsh"),
         Part("ros1-install", ("tools/install_ros1.sh",), "install"),
         Part("ros2-jazzy-install", ("tools/install_ros2.sh", "jazzy"), "install"),
         Part("ros2-kilted-install", ("tools/install_ros2.sh", "kilted"), "install"),
@@ -150,6 +152,7 @@ def parts() -> list[Part]:
         Part("fuzz", (PYTHON, "tools/fuzz.py", "--minutes", "1"), budget=620, repeats=True),
         Part("docs", (*PYTEST, "tests/docs", "tests/packaging", "-m", "not ros2"), budget=100),
         Part("mistakes", (*PYTEST, "tests/mistakes"), budget=170),
+        Part("shells", (*PYTEST, "tests/shells"), needs="fish", skips_fail=True),
         Part("browser", (*PYTEST, "tests/unit/look", "-m", "browser"), needs="chromium", skips_fail=True),
     ]
     for minor in (12, 13, 14):
