@@ -1,0 +1,59 @@
+"""What names in programs mean: pure functions for editors, without a protocol.
+
+An `Index` holds the occurrences of all names of one project. Build it from what the checker reads, and replace a program
+after each edit; programs may have errors, as `jacaros.agents.language.loader.read_program` skips only broken clauses.
+
+    index = Index(artifacts=types, actions=code.actions)
+    index.put("src/agt/robot.asl", program)               # again after each edit; `index.drop(name)` removes it
+    occurrence_at(index, file, Position(3, 7))            # *file*: the text in the editor, a `SourceFile`
+    definitions(index, file, at); references(index, file, at); highlights(index, file, at)
+    renamable(index, file, at); rename(index, file, at, "charge")   # raise `RenameRefused`
+    completions(index, file, at)
+    hover(index, file, at)
+    hints(index, file)                                    # or only those in a range of lines
+
+    yaml_completions(file, at); yaml_hover(file, at)      # mapping, world, fault and project files
+
+Positions count from 1, columns in characters (`model`). A file is known by its name in spans.
+"""
+
+from jacaros.editors.symbols.completion import completions
+from jacaros.editors.symbols.hints import hints
+from jacaros.editors.symbols.hovers import hover
+from jacaros.editors.symbols.index import Index
+from jacaros.editors.symbols.model import (
+    Completion,
+    Edit,
+    Hint,
+    Hover,
+    Occurrence,
+    Position,
+    RenameRefused,
+    Symbol,
+)
+from jacaros.editors.symbols.navigation import definitions, highlights, occurrence_at, references
+from jacaros.editors.symbols.renaming import rename, renamable
+from jacaros.editors.symbols.yaml_keys import yaml_completions, yaml_hover
+
+__all__ = [
+    "Completion",
+    "Edit",
+    "Hint",
+    "Hover",
+    "Index",
+    "Occurrence",
+    "Position",
+    "RenameRefused",
+    "Symbol",
+    "completions",
+    "definitions",
+    "highlights",
+    "hints",
+    "hover",
+    "occurrence_at",
+    "references",
+    "rename",
+    "renamable",
+    "yaml_completions",
+    "yaml_hover",
+]
