@@ -32,7 +32,7 @@ from jacaros.editors.symbols.model import (
     Symbol,
 )
 from jacaros.editors.symbols.navigation import definitions, highlights, occurrence_at, references
-from jacaros.editors.symbols.renaming import rename, renamable
+from jacaros.editors.symbols.renaming import renamable, rename
 from jacaros.editors.symbols.yaml_keys import yaml_completions, yaml_hover
 
 __all__ = [
@@ -52,8 +52,8 @@ __all__ = [
     "hover",
     "occurrence_at",
     "references",
-    "rename",
     "renamable",
+    "rename",
     "yaml_completions",
     "yaml_hover",
 ]

@@ -14,7 +14,7 @@ from jacaros.runtime.errors import JacarosError
 Kind = OneOf["belief", "goal", "plan", "operation", "internal action", "variable"]
 """Observable properties and test goals are beliefs. A plan is named by its label."""
 Role = OneOf["defines", "adds", "removes", "asks", "handles", "calls", "tells", "offers", "mentions"]
-"""What an occurrence does: a fact or rule *defines* a belief; a trigger *handles* a belief or goal; a step *calls* a goal."""
+"""What is done where a name occurs: a fact or rule *defines* a belief, a trigger *handles* a goal, a step *calls* it."""
 
 
 class Position(NamedTuple):
@@ -40,7 +40,9 @@ class Symbol(NamedTuple):
     scope: str = ""
 
     def __str__(self) -> str:
-        marked = f"!{self.name}" if self.kind == "goal" else f"@{self.name}" if self.kind == "plan" else self.name
+        marked = (
+            f"!{self.name}" if self.kind == "goal" else f"@{self.name}" if self.kind == "plan" else self.name
+        )
         return f"{marked}/{self.arity}" if self.kind in ("belief", "goal", "operation") else marked
 
 
@@ -52,12 +54,14 @@ class Occurrence(NamedTuple):
         role: what is done there.
         span: the name alone.
         clause: the whole clause around it.
+        arguments: names of the variables that are its arguments; empty texts for others.
     """
 
     symbol: Symbol
     role: Role
     span: Span
     clause: Span
+    arguments: tuple[str, ...] = ()
 
 
 class Edit(NamedTuple):

@@ -1,0 +1,87 @@
+"""What a symbol is, in one line and in Markdown: its signature, its documentation, and where it comes from."""
+
+from collections.abc import Iterable, Iterator
+from pathlib import PurePath
+
+from jacaros.agents.mind.actions.internal_action import InternalAction
+from jacaros.agents.terms.functions import ARITIES
+from jacaros.editors.symbols.artifact_types import Offered
+from jacaros.editors.symbols.docstrings import markdown, usages_in
+from jacaros.editors.symbols.index import Index
+from jacaros.editors.symbols.model import Occurrence, Role, Symbol
+
+_FEW = 5
+"""Number of places that are listed."""
+_ROLES: tuple[tuple[str, tuple[Role, ...]], ...] = (
+    ("fact or rule", ("defines",)),
+    ("offered", ("offers",)),
+    ("added", ("adds",)),
+    ("told", ("tells",)),
+    ("removed", ("removes",)),
+    ("handled", ("handles",)),
+    ("posted", ("calls",)),
+    ("asked", ("asks",)),
+)
+
+
+def described(index: Index, symbol: Symbol) -> tuple[str, str]:
+    """Return one line, and Markdown, about a belief or goal."""
+    occurrences = index.of(symbol)
+    lines = list(_where(occurrences, symbol))
+    files = {PurePath(each.span.file.name).name for each in occurrences}
+    return f"{symbol.kind} in {', '.join(sorted(files)[:2])}" if files else symbol.kind, "\n".join(lines)
+
+
+def _where(occurrences: Iterable[Occurrence], symbol: Symbol) -> Iterator[str]:
+    """Say where a belief is added or a goal is handled, with the lines of the programs."""
+    found = list(occurrences)
+    for what, roles in _ROLES if symbol.kind != "plan" else ():
+        places = [_link(each) for each in found if each.role in roles]
+        if places:
+            more = f" and {len(places) - _FEW} more" if len(places) > _FEW else ""
+            yield f"- {what}: {', '.join(places[:_FEW])}{more}"
+
+
+def _link(occurrence: Occurrence) -> str:
+    span = occurrence.span
+    return f"{PurePath(span.file.name).name}:{span.line}"
+
+
+def signature_of(offered: Offered) -> str:
+    """Return an operation or property with kinds and units of its values, in several lines of Markdown."""
+    lines = [f"```\n{offered}\n```", f"{offered.how} of `{offered.holder}`"]
+    lines += [
+        f"- `{each.name}`: {each.words or each.unit}" for each in offered.arguments if each.words or each.unit
+    ]
+    return "\n\n".join(
+        [*lines[:2], *(["\n".join(lines[2:])] if lines[2:] else []), *filter(None, [offered.text])]
+    )
+
+
+def summary_of_action(action: InternalAction) -> str:
+    """Return the documentation of an internal action."""
+    return markdown(action.function.__doc__)
+
+
+def about_action(name: str, action: InternalAction | None) -> str:
+    """Return the usage, properties and documentation of an internal action or function."""
+    if action is None:
+        least, most = ARITIES.get(name, (0, 0))
+        return f"```\n{name}\n```\n\narithmetic function, {_counted(least, most)}" if name in ARITIES else ""
+    doc = action.function.__doc__
+    usages = usages_in(doc) or [name]
+    maximum = float("inf") if action.maximum is None else action.maximum
+    traits = [
+        "internal action",
+        _counted(action.minimum, maximum),
+        "several answers" if action.backtracks else "",
+        "not in contexts" if action.body_only else "",
+    ]
+    text = "\n".join(usages)
+    return f"```\n{text}\n```\n\n{', '.join(filter(None, traits))}\n\n{markdown(doc)}"
+
+
+def _counted(least: float, most: float) -> str:
+    if least == most:
+        return f"{least:g} argument{'s' * (least != 1)}"
+    return f"{least:g} or more arguments" if most == float("inf") else f"{least:g} to {most:g} arguments"
