@@ -8,7 +8,7 @@ from jacaros.agents.language.term_parser import PERFORMATIVES
 from jacaros.agents.terms.functions import ARITIES
 from jacaros.editors.symbols.artifact_types import Offered
 from jacaros.editors.symbols.descriptions import described, summary_of_action
-from jacaros.editors.symbols.docstrings import parameters_in
+from jacaros.editors.symbols.docstrings import parameters_in, short_unit
 from jacaros.editors.symbols.index import Index
 from jacaros.editors.symbols.model import Completion, Kind, Position, Symbol
 from jacaros.editors.symbols.tokens_at import OpenCall, Reading, reading_at
@@ -204,7 +204,7 @@ def _offered(each: Offered, kind: str, reading: Reading, rank: int) -> Completio
     names = [
         one.name if each.how == "operation" else one.name[:1].upper() + one.name[1:] for one in each.arguments
     ]
-    shown = [f"{one.name}: {one.unit}" if one.unit else one.name for one in each.arguments]
+    shown = [f"{one.name}: {short_unit(one.unit)}" if one.unit else one.name for one in each.arguments]
     label = (
         f"{each.name}({', '.join(shown)}{', ...' if shown and each.is_open else ''})" if shown else each.name
     )
