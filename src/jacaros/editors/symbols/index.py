@@ -5,11 +5,12 @@ from pathlib import PurePath
 
 import jacaros.agents.mind.actions.standard  # noqa: F401 - fills the table of internal actions
 from jacaros.agents.language import nodes
+from jacaros.agents.language.diagnostics import SourceFile
 from jacaros.agents.mind.actions.internal_action import STANDARD, InternalAction
 from jacaros.artifacts.env.artifact import Artifact
 from jacaros.editors.symbols.artifact_types import Offered, offered_by, standard_offers
 from jacaros.editors.symbols.model import Kind, Occurrence, Position, Symbol
-from jacaros.editors.symbols.occurrences import occurrences_of
+from jacaros.editors.symbols.occurrences import declared_in, occurrences_of
 from jacaros.robots.registry import BUILT_IN
 from jacaros.runtime.mas.checks.observables import Observables
 
@@ -37,10 +38,22 @@ class Index:
         self._observables = Observables()
         self._types: dict[type[Artifact], list[Offered]] = {}
         self._offered: dict[str, list[Offered]] = {}
-        self._programs: dict[str, tuple[nodes.Program, list[Occurrence]]] = {}
+        self._programs: dict[str, tuple[nodes.Program | SourceFile, list[Occurrence]]] = {}
         self._by_symbol: dict[Symbol, list[Occurrence]] | None = None
         self._by_file: dict[str, dict[int, list[Occurrence]]] = {}
         self.furnish(artifacts)
+
+    def renewed(
+        self,
+        artifacts: Iterable[type[Artifact]],
+        actions: Mapping[str, InternalAction],
+        agents: Sequence[str],
+    ) -> "Index":
+        """Return an index without programs that keeps what is known of artifact types. This one stays as it is."""
+        other = Index((), actions, agents)
+        other._types, other._observables = self._types, self._observables
+        other.furnish(artifacts)
+        return other
 
     def furnish(self, artifacts: Iterable[type[Artifact]]) -> None:
         """Replace the types of the project's artifacts. A type that was known before is not read again."""
@@ -61,8 +74,13 @@ class Index:
             self._programs[name] = program, list(occurrences_of(program, self.actions, name))
             self._by_symbol = None
 
+    def put_project(self, file: SourceFile) -> None:
+        """Add a project file, for the beliefs and goals that it gives its agents, or replace it."""
+        self._programs[file.name] = file, list(declared_in(file))
+        self._by_symbol = None
+
     def drop(self, name: str) -> None:
-        """Remove a program."""
+        """Remove a program or project file."""
         if self._programs.pop(name, None) is not None:
             self._by_symbol = None
 

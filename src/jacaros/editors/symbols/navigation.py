@@ -8,6 +8,7 @@ from jacaros.editors.symbols.index import Index
 from jacaros.editors.symbols.model import Kind, Occurrence, Position, Role, Symbol
 from jacaros.editors.symbols.occurrences import scope_of
 from jacaros.editors.symbols.tokens_at import Reading, reading_at
+from jacaros.runtime.mas.checks.files import PROJECTS
 
 _DEFINING: Final[tuple[tuple[Role, ...], ...]] = (("defines",), ("handles",), ("offers",), ("adds", "tells"))
 """What counts as the definition of a goal or plan, the best first."""
@@ -22,7 +23,7 @@ def occurrence_at(index: Index, file: SourceFile, at: Position) -> Occurrence | 
     if found is not None and _is_there(file, found):
         return found
     reading = reading_at(file, at)
-    if reading.word_span is None:
+    if reading.word_span is None or file.name.endswith(PROJECTS):
         return None
     return Occurrence(_guessed(reading, file), "mentions", reading.word_span, reading.word_span)
 

@@ -13,14 +13,17 @@ at/1 adds 41
 
 import re
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from typing import Final
 
 from jacaros.agents.checks.formulas import conditions
 from jacaros.agents.checks.goals import ON_GOALS
 from jacaros.agents.language import nodes
-from jacaros.agents.language.diagnostics import Span
+from jacaros.agents.language.diagnostics import AslError, SourceFile, Span
+from jacaros.agents.language.loader import parse_literals
 from jacaros.agents.language.nodes import UNDECLARED, Declaration, children
 from jacaros.editors.symbols.model import Kind, Occurrence, Role, Symbol
+from jacaros.runtime.mas.project.reading import reader_of
 
 _BEFORE_NAME: Final = re.compile(r"~?\s*(?:\w*\s*::\s*)?~?\s*")
 """What may be written before the name of a literal: a namespace, and a strong negation."""
@@ -65,6 +68,25 @@ def occurrences_of(
             found = _word_in(offer.span, offer.name)
             if found is not None:
                 yield Occurrence(symbol, "offers", found, offer.span, names)
+
+
+def declared_in(file: SourceFile) -> Iterator[Occurrence]:
+    """Yield the occurrences in the beliefs and goals that a project file gives its agents."""
+    seeker = _Seeker({}, file.name)
+    for agent in reader_of(file, []).read().agents:
+        kinds: tuple[tuple[Kind, list[tuple[str, Span]]], ...] = (
+            ("belief", agent.beliefs),
+            ("goal", agent.goals),
+        )
+        for kind, pieces in kinds:
+            for text, place in pieces:
+                quoted = file.lines[place.line - 1][place.column - 1 :].startswith('"')
+                # The text stays where it is, so the places of its nodes are those in the file.
+                padded = "\n" * (place.line - 1) + " " * (place.column - 1 + quoted) + text
+                with suppress(AslError):  # the checker reports it
+                    for literal in parse_literals(padded, file.name):
+                        for each in seeker.clause(literal, kind):
+                            yield each._replace(span=each.span._replace(file=file), clause=place)
 
 
 class _Seeker:

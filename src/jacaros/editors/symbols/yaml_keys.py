@@ -1,24 +1,33 @@
-"""Keys and values of mapping, world and fault files, by the JSON Schema that is made from their declarations."""
+"""Keys and values of mapping, world and fault files, by the JSON Schemas that are made from their declarations."""
 
 import re
 from collections.abc import Iterator, Mapping
-from typing import Any, Final
+from functools import cache
+from typing import Final
 
 from jacaros.agents.language.diagnostics import SourceFile, Span
+from jacaros.editors.schemas import SCHEMAS, Schema
 from jacaros.editors.symbols.model import Completion, Hover, Position
+from jacaros.editors.symbols.project_keys import project_completions
 from jacaros.editors.symbols.yaml_places import Path, keys_in, place_in
+from jacaros.runtime.mas.checks.files import PROJECTS
 
-Schema = Mapping[str, Any]
 _WORD: Final = re.compile(r"[\w$./-]+")
 
 
-def yaml_completions(schema: Schema, file: SourceFile, at: Position) -> list[Completion]:
-    """Return the keys or values that can be written at a position of a file with that schema."""
+def yaml_completions(file: SourceFile, at: Position) -> list[Completion]:
+    """Return the keys or values that can be written at a position of a mapping, world, fault or project file.
+
+    The keys of the file say which of them it is; nothing is known of a file with other keys. Project files have a
+    language of their own.
+    """
+    if file.name.endswith(PROJECTS):
+        return project_completions(file, at)
     place = place_in(_before(file, at))
     beside = keys_in(file.text).get(place.path, {})
     start = at.column - len(place.partial)
     replaces = Span(file, at.line, start, at.line, at.column)
-    around = _schemas(schema, file.text, place.path)
+    around = _schemas(file.text, place.path)
     found: dict[str, Completion] = {}
     if place.key:
         for each in _at_key(around, place.key):
@@ -36,8 +45,8 @@ def yaml_completions(schema: Schema, file: SourceFile, at: Position) -> list[Com
     return list(found.values())
 
 
-def yaml_hover(schema: Schema, file: SourceFile, at: Position) -> Hover | None:
-    """Return what is declared of the key or value at a position."""
+def yaml_hover(file: SourceFile, at: Position) -> Hover | None:
+    """Return what is declared of the key or value at a position of a mapping, world or fault file."""
     line = file.lines[at.line - 1] if at.line <= len(file.lines) else ""
     word = next((each for each in _WORD.finditer(line) if each.start() < at.column <= each.end() + 1), None)
     if word is None:
@@ -45,7 +54,7 @@ def yaml_hover(schema: Schema, file: SourceFile, at: Position) -> Hover | None:
     place = place_in(_before(file, Position(at.line, word.end() + 1)))
     key = place.key or place.partial
     texts = dict.fromkeys(
-        filter(None, (_told(each) for each in _at_key(_schemas(schema, file.text, place.path), key)))
+        filter(None, (_told(each) for each in _at_key(_schemas(file.text, place.path), key)))
     )
     span = Span(file, at.line, word.start() + 1, at.line, word.end() + 1)
     return Hover(f"`{key}`\n\n" + "\n\n".join(texts), span) if texts else None
@@ -56,11 +65,27 @@ def _before(file: SourceFile, at: Position) -> str:
     return "\n".join([*lines[:-1], lines[-1][: at.column - 1]]) if lines else ""
 
 
-def _schemas(schema: Schema, text: str, path: Path) -> list[Schema]:
+@cache
+def _every() -> tuple[Schema, ...]:
+    return tuple([make() for make in SCHEMAS.values()])
+
+
+def _kinds(keys: Mapping[str, str]) -> list[Schema]:
+    """Return the schemas of files with these keys; all of them for an empty file."""
+    known = [len(keys.keys() & each["properties"].keys()) for each in _every()]
+    most = max(known)
+    return (
+        []
+        if keys and not most
+        else [each for each, count in zip(_every(), known, strict=True) if count == most]
+    )
+
+
+def _schemas(text: str, path: Path) -> list[Schema]:
     """Return the schemas of the mapping at a path that fit the keys which it has."""
     keys = keys_in(text)
     walked: Path = ()
-    found = _fitting(schema, keys.get(walked, {}))
+    found = _kinds(keys.get(walked, {}))
     for step in path:
         walked = (*walked, step)
         beside = keys.get(walked, {})
@@ -100,7 +125,7 @@ def _items(schemas: list[Schema]) -> Iterator[Schema]:
 def _at_key(schemas: list[Schema], key: str) -> Iterator[Schema]:
     for schema in schemas:
         inner = schema.get("properties", {}).get(key, schema.get("additionalProperties"))
-        if isinstance(inner, Mapping):
+        if isinstance(inner, dict):
             yield inner
 
 

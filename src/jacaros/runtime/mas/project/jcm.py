@@ -520,6 +520,8 @@ _WORKSPACE: Final = Block(
     {"artifact": _R._artifact, "debug": _R._inspector},
 )
 _OF_ARTIFACT: Final = Block("an artifact", {"focused-by": _R._focused_by})
+BLOCKS: Final = {"agent": _AGENT, "workspace": _WORKSPACE, "artifact": _OF_ARTIFACT}
+"""The blocks by the keyword of what has them."""
 
 
 def _unquoted(text: str) -> str:

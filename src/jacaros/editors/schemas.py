@@ -1,0 +1,168 @@
+"""JSON Schemas of world, fault and mapping files, from the declarations that their readers use.
+
+Editors complete keys and mark mistakes with them. They are laxer than the readers, which also know places, names and types.
+"""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from jacaros.robots.mapping import fields, offers, operations, properties
+from jacaros.robots.mapping.file import ArtifactPart
+from jacaros.robots.plane.pose import Pose
+from jacaros.robots.plane.shapes import Segment
+from jacaros.robots.streams import OPERATORS
+from jacaros.robots.world.data import robot, world
+from jacaros.robots.world.data.faults import KINDS, Fault
+from jacaros.robots.world.files.robot import SECTIONS
+from jacaros.robots.world.files.world import KEYS as WORLD_KEYS
+from jacaros.runtime.files.entries import declared_entries
+
+Schema = dict[str, Any]
+NUMBER: Schema = {"type": "number"}
+TEXT: Schema = {"type": "string"}
+PAIR: Schema = {"type": "array", "items": NUMBER, "minItems": 2, "maxItems": 2}
+POINTS: Schema = {"type": "array", "items": PAIR}
+RECTANGLE: Schema = {
+    "type": "object",
+    "properties": {"from": PAIR, "to": PAIR},
+    "additionalProperties": False,
+}
+POSE: Schema = {
+    "type": "object",
+    "properties": {"x": NUMBER, "y": NUMBER, "yaw_degrees": NUMBER},
+    "additionalProperties": False,
+}
+ANYTHING: Schema = {}
+
+
+def mapping(properties: Mapping[str, Schema], required: Iterable[str] = ()) -> Schema:
+    """Return the schema of a mapping with these keys and no others."""
+    needed = list(required)
+    return {
+        "type": "object",
+        "properties": dict(properties),
+        "additionalProperties": False,
+        **({"required": needed} if needed else {}),
+    }
+
+
+def named(item: Schema) -> Schema:
+    """Return the schema of a mapping from names to items."""
+    return {"type": "object", "additionalProperties": item}
+
+
+def listed(item: Schema) -> Schema:
+    """Return the schema of a list."""
+    return {"type": "array", "items": item}
+
+
+def declared(usual: Any, **others: Schema) -> Schema:
+    """Return the schema of a mapping whose keys are declared at the fields of a dataclass.
+
+    Args:
+        usual: an instance with the defaults.
+        others: further keys, and those whose declarations have no schema.
+    """
+    found: dict[str, Schema] = {}
+    required = []
+    for key, (name, entry, needed) in declared_entries(usual).items():
+        default = getattr(usual, name)
+        inner = declared(default) if entry.schema == {"type": "object"} else dict(entry.schema)
+        words = f"{entry.words}: {entry.help}" if entry.help else entry.words
+        found[key] = {**inner, **others.pop(key, {}), **({"description": words} if words else {})}
+        if needed:
+            required.append(key)
+    return mapping({**found, **others}, required)
+
+
+def worlds() -> Schema:
+    """Return the schema of world files."""
+    of_robots = {
+        "kind": {"type": "string"},
+        "pose": POSE,
+        "navigation": {"anyOf": [{"type": "boolean"}, declared(robot.NavigationSettings())]},
+        "gripper": {"anyOf": [{"type": "boolean"}, mapping({"reach": NUMBER})]},
+        "tools": named(declared(robot.CleaningTool("", ()), removes=listed(TEXT))),
+        **dict.fromkeys(SECTIONS, named(ANYTHING)),
+    }
+    dock = declared(world.Dock("", Pose(0.0, 0.0, 0.0)), x=NUMBER, y=NUMBER, yaw_degrees=NUMBER)
+    box = {"anyOf": [RECTANGLE, {"type": "object"}]}
+    wall = {"segment": POINTS, "polyline": POINTS, "box": box, "closed": {"type": "boolean"}}
+    own = {
+        "map": TEXT,
+        "size": PAIR,
+        "bounds": RECTANGLE,
+        "border": {"enum": ["open", "walls"]},
+        "walls": listed(mapping(wall)),
+        "rooms": named(ANYTHING),
+        "docks": listed({**dock, "required": ["x", "y"]}),
+        "doors": listed(declared(world.Door("", Segment(0.0, 0.0, 1.0, 0.0)), segment=POINTS)),
+        "cliffs": listed(RECTANGLE),
+        "objects": listed(declared(world.ObjectDescription("", 0.0, 0.0))),
+        "robots": {**listed(declared(robot.RobotDescription(), **of_robots)), "minItems": 1},
+        "people": listed(declared(world.PersonDescription("", ()), path=POINTS)),
+    }
+    found = declared(world.WorldDescription(), **own)
+    found["properties"] = {key: found["properties"][key] for key in WORLD_KEYS}
+    return {**found, "required": ["robots"]}
+
+
+def faults() -> Schema:
+    """Return the schema of fault files."""
+    place = {**POSE, "required": ["x", "y"]}
+    own = {
+        "to": {"anyOf": [NUMBER, place]},
+        **declared(world.PersonDescription("", ()), path=POINTS)["properties"],
+    }
+    one = {"minProperties": 1, "maxProperties": 1}
+    keys = {**own, **declared(Fault("", ""), after=one)["properties"]}
+    kinds = [
+        mapping(
+            {
+                "kind": {"const": name},
+                "robot": TEXT,
+                **{key: keys[key] for key in ("at", "after", "for", *kind.keys)},
+            },
+            ["kind"],
+        )
+        for name, kind in KINDS.items()
+    ]
+    return mapping({"faults": named({"anyOf": kinds})}, ["faults"])
+
+
+def keys_of(keys: Iterable[str], *required: str) -> Schema:
+    """Return the schema of a mapping with these keys and any values."""
+    return mapping(dict.fromkeys(keys, ANYTHING), required)
+
+
+def mappings() -> Schema:
+    """Return the schema of mapping files: the parts of one artifact, or ``artifacts``."""
+    value = {"type": ["string", "number", "boolean", "null"]}
+    values = {"anyOf": [value, {"type": "array"}]}
+    field = {"anyOf": [value, keys_of(fields.FIELD, "path")]}
+    of_message = {"fields": {"anyOf": [field, listed(field)]}}
+    topic = [
+        {**each, "properties": {**each["properties"], **of_message}}
+        for each in (keys_of(properties.PROPERTY, "topic"), keys_of(properties.SIGNAL, "topic"))
+    ]
+    kinds = [keys_of([*keys, *operations.COMMON], kind) for kind, keys in operations.KEYS.items()]
+    derived = [
+        keys_of([name, *shape.required, *shape.optional, *properties.DERIVED], name)
+        for name, shape in OPERATORS.items()
+    ]
+    own = {
+        "properties": named({"anyOf": [TEXT, topic[0]]}),
+        "signals": named({"anyOf": [TEXT, topic[1]]}),
+        "frames": named(keys_of(properties.FRAME, "target", "source")),
+        "parameters": named({"anyOf": [values, keys_of(properties.OWN, "default")]}),
+        "derived": named({"anyOf": derived}),
+        "operations": named({"anyOf": [*kinds, listed({"anyOf": kinds})]}),
+    }
+    artifact = declared(ArtifactPart("", fields.START), **own)
+    offer = [keys_of(keys, "type") for keys in (offers.OF_ACTION, offers.OF_TOPIC)]
+    of_file = {"offers": named({"anyOf": offer}), "roles": {"anyOf": [TEXT, listed(TEXT)]}}
+    several = {**artifact["properties"], **of_file, "artifacts": named(artifact)}
+    return mapping(several)
+
+
+SCHEMAS = {"world": worlds, "faults": faults, "mapping": mappings}
