@@ -3,20 +3,25 @@
 from collections.abc import Iterator
 
 from jacaros.agents.language.diagnostics import SourceFile
-from jacaros.agents.language.lexer import Token, tokenize
+from jacaros.agents.language.lexer import Token
 from jacaros.editors.symbols.docstrings import short_unit
 from jacaros.editors.symbols.index import Index
 from jacaros.editors.symbols.model import Hint, Occurrence, Position
+from jacaros.editors.symbols.tokens_at import tokens_of
+
+_FURTHER = 20
+"""Number of lines below the last one that a call may reach into."""
 
 
 def hints(index: Index, file: SourceFile, first: int = 1, last: int | None = None) -> list[Hint]:
     """Return the notes for the lines from *first* to *last*, in order."""
-    tokens = [each for each in tokenize(file, lambda _: None) if each.kind != "end"]
+    last = len(file.lines) if last is None else last
+    tokens = tokens_of(file, first, last + _FURTHER)
     places = {(each.line, each.column): number for number, each in enumerate(tokens)}
     found: list[Hint] = []
     for occurrence in index.in_file(file.name):
         span = occurrence.span
-        if first <= span.line and (last is None or span.line <= last) and occurrence.symbol.arity:
+        if first <= span.line <= last and occurrence.symbol.arity:
             number = places.get((span.line, span.column))
             if number is not None and tokens[number].text == occurrence.symbol.name:
                 found += _of(index, occurrence, tokens, number)

@@ -95,19 +95,28 @@ class _Seeker:
     def __init__(self, actions: Mapping[str, Declaration], name: str) -> None:
         self._actions, self._name = actions, name
         self._clause: Span | None = None
+        self._scope = ""
         self._found: list[Occurrence] = []
         self._stack: list[_Place] = []
 
     def clause(self, clause: nodes.Node, kind: Kind = "belief") -> list[Occurrence]:
         """Return the occurrences in a plan, a rule, or an initial belief or goal."""
         self._clause, self._found = clause.span, []
+        self._scope = scope_of(clause.span) if clause.span is not None else ""
         if isinstance(clause, nodes.Literal):
             self._note(kind, clause, "defines" if kind == "belief" else "calls")
             self._push(*_parts(clause))
         else:
             self._push(clause)
         while self._stack:
-            self._look(*self._stack.pop())
+            node, asked = self._stack.pop()
+            if type(node) is nodes.Variable:  # the most frequent kind
+                if not node.unnamed:
+                    self._note_name("variable", node, node.name, "mentions")
+                if node.annotations is not None:
+                    self._push(node.annotations)
+            else:
+                self._look(node, asked)
         return self._found
 
     def _push(self, *below: nodes.Node, asked: bool = False) -> None:
@@ -138,14 +147,13 @@ class _Seeker:
                 self._push(*node.operands, asked=asked)
             case nodes.Literal() if asked and not (node.functor in ("true", "false") and not node.arguments):
                 self._literal("belief", node, "asks")
-            case nodes.Variable(unnamed=False):
-                self._note_name("variable", node, node.name, "mentions")
-                self._below(node)
+            case nodes.Number() | nodes.String():
+                return
             case _:
                 self._below(node)
 
     def _below(self, node: nodes.Node, without: nodes.Node | None = None) -> None:
-        asked = set(map(id, conditions(node)))
+        asked = set(map(id, conditions(node)))  # none for most nodes
         self._stack += [
             (each, id(each) in asked) for each in reversed(list(children(node))) if each is not without
         ]
@@ -236,7 +244,7 @@ class _Seeker:
         if span is None:
             return  # made by a pattern
         if kind == "variable":
-            scope = scope_of(self._clause)
+            scope = self._scope
         self._found.append(Occurrence(Symbol(kind, name, arity, scope), role, span, self._clause, arguments))
 
 
@@ -256,10 +264,12 @@ def _name_in(span: Span, name: str) -> Span | None:
     if not 0 < span.line <= len(lines):
         return None
     line = lines[span.line - 1]
-    before = _BEFORE_NAME.match(line, span.column - 1)
-    start = span.column - 1 if line.startswith(name, span.column - 1) else before.end() if before else 0
+    start = span.column - 1
     if not line.startswith(name, start):
-        return None
+        before = _BEFORE_NAME.match(line, start)
+        start = before.end() if before is not None else start
+        if not line.startswith(name, start):
+            return None
     return Span(span.file, span.line, start + 1, span.line, start + 1 + len(name))
 
 

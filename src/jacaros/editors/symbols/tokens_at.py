@@ -20,7 +20,7 @@ comment or string, where names have no meaning.
 """
 _NAMES: Final = frozenset({"atom", "variable"})
 _OPENS: Final = {"(": ")", "[": "]", "{": "}"}
-_BEGINS: Final = frozenset({"+", "-", "!", "@", "{", "^"})
+_BEGINS: Final = frozenset("+-!@{^")
 """What may begin a clause at the beginning of a line, so that a broken clause above does not reach it."""
 
 
@@ -73,7 +73,7 @@ class Reading:
 def reading_at(file: SourceFile, at: Position) -> Reading:
     """Return what is around a position, whether the text parses or not."""
     comments: list[Comment] = []
-    tokens = [each for each in tokenize(file, lambda _: None, comments) if each.kind != "end"]
+    tokens = tokens_of(file, *_around(file, at.line), comments)
     empty = Span(file, at.line, at.column, at.line, at.column)
     before = [each for each in tokens if (each.line, each.column) < at]
     last = before[-1] if before else None
@@ -97,6 +97,25 @@ def reading_at(file: SourceFile, at: Position) -> Reading:
     )
     _name(reading, file, tokens, len(before) - 1)
     return reading
+
+
+def tokens_of(file: SourceFile, first: int, last: int, comments: list[Comment] | None = None) -> list[Token]:
+    """Return the tokens of the lines from *first* to *last*, at their places in the file."""
+    part = SourceFile(file.name, "\n" * (first - 1) + "\n".join(file.lines[first - 1 : last]))
+    return [each for each in tokenize(part, lambda _: None, comments) if each.kind != "end"]
+
+
+def _around(file: SourceFile, line: int) -> tuple[int, int]:
+    """Return the first and last line of the clauses around a line: the whole text would take too long.
+
+    In a text that may be in a long comment, the first line is that of the file.
+    """
+    lines = file.lines
+    last = next((each for each in range(line, len(lines)) if lines[each][:1] in _BEGINS), len(lines))
+    above = range(min(line, len(lines)) - 1, 0, -1)
+    first = next((each for each in above if lines[each][:1] in _BEGINS), 0)
+    before = "\n".join(lines[:first])
+    return 1 if before.rfind("/*") > before.rfind("*/") else first + 1, last
 
 
 def _is_name(token: Token) -> bool:
