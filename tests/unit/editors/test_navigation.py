@@ -5,7 +5,18 @@ from pathlib import Path
 import pytest
 from edited import edited
 
-from jacaros.editors.symbols import RenameRefused, definitions, highlights, references, renamable, rename
+from jacaros.editors.symbols import (
+    Index,
+    RenameRefused,
+    definitions,
+    highlights,
+    hover,
+    references,
+    renamable,
+    rename,
+)
+from jacaros.robots.registry import type_finder
+from jacaros.runtime.files.python_modules import ProjectModules
 
 LIBRARY = ("lib.asl", "+!help(X) : near(X) <- stop.\nnear(home).")
 
@@ -104,3 +115,28 @@ def test_rename_refuses_names_of_libraries() -> None:
     index, file, at = edited("+!go <- !hel‸p.", ("$jacaros/lib.asl", "+!help."))
     with pytest.raises(RenameRefused, match="in the library"):
         renamable(index, file, at)
+
+
+def test_python_of_the_project_is_read_and_not_run(tmp_path: Path) -> None:
+    (tmp_path / "artifacts.py").write_text(
+        "from pathlib import Path\n"
+        "from jacaros.artifacts import Artifact, operation\n"
+        "Path(__file__).with_name('ran').touch()\n\n\n"
+        "class Lamp(Artifact):\n"
+        '    """Gives light."""\n\n'
+        "    def init(self) -> None:\n"
+        '        self.define_property("lit", False)\n\n'
+        "    @operation\n"
+        "    async def fade(self, seconds: float) -> None:\n"
+        '        """Fade in *seconds* seconds."""\n',
+        encoding="utf-8",
+    )
+    lamp = type_finder(ProjectModules(tmp_path, unseen=set()))("Lamp")
+    for marked, line, column in (("+!go <- fa‸de(3).", 13, 15), ("+li‸t(true).", 10, 30)):
+        (found,) = definitions(*edited(marked, index=Index([lamp])))
+        assert found[1:3] == (line, column)
+        assert Path(found.file.name) == tmp_path / "artifacts.py"
+    text = hover(*edited("+!go <- fa‸de(3).", index=Index([lamp])))
+    assert text is not None
+    assert "Fade in *seconds* seconds" in text.text
+    assert not (tmp_path / "ran").exists()
