@@ -6,25 +6,29 @@ True
 
 import ast
 import inspect
+import os
 import re
 from collections.abc import Iterator
-from functools import cache
+from functools import lru_cache
 from pathlib import Path
+
+_MOST_FILES = 500
 
 
 class ClassSources:
-    """Reads the code of classes, and each file once: `inspect.getsource` reads the whole file for each class."""
+    """Reads the code of classes, and each version of a file once: `inspect.getsource` reads it for each class."""
 
     def __init__(self) -> None:
-        self._of_file = cache(_of_file)
+        self._of_file = lru_cache(_MOST_FILES)(_of_file)
 
     def of(self, kind: type) -> ast.ClassDef | None:
         """Return the code of a class; None for a class that was made at run time."""
         try:
             file = inspect.getsourcefile(kind)
+            changed = os.stat(file).st_mtime_ns if file else 0
         except (OSError, TypeError):
             return None
-        return self._of_file(file).get(kind.__qualname__) if file else None
+        return self._of_file(file, changed).get(kind.__qualname__) if file else None
 
     def mentions(self, kind: type, pattern: re.Pattern[str]) -> bool | None:
         """Return whether a pattern is in the code of a class; None if its code is not known."""
@@ -32,7 +36,7 @@ class ClassSources:
         return None if code is None else pattern.search(ast.unparse(code)) is not None
 
 
-def _of_file(file: str) -> dict[str, ast.ClassDef]:
+def _of_file(file: str, _changed: int) -> dict[str, ast.ClassDef]:
     try:
         tree = ast.parse(Path(file).read_bytes())
     except (OSError, SyntaxError, ValueError):

@@ -60,6 +60,7 @@ COMMANDS = {
     "guard": ("jacaros.runtime.cli.guard", "Stop the robot when its agents no longer can."),
     "fleet": ("jacaros.runtime.cli.fleet", "Look at a fleet of systems, and set it up."),
     "ros": ("jacaros.runtime.cli.ros", "Inspect a live ROS graph, and write mapping files for it."),
+    "lsp": ("jacaros.runtime.cli.lsp", "Run the language server for editors."),
     "describe": ("jacaros.runtime.cli.describe", "Describe an artifact type, a mapping file or a project."),
     "version": ("jacaros.runtime.cli.main:version", "Print the versions of jacaros and its dependencies."),
 }

@@ -456,6 +456,11 @@ class ProjectModules:
         files = (getattr(module, "__file__", None) for module in self._modules.values())
         return [Path(file) for file in dict.fromkeys(files) if file]
 
+    def forget(self) -> None:
+        """Remove the outlines from the module table, which keeps them alive. Their types remain usable."""
+        for name in self._modules:
+            sys.modules.pop(f"{self._prefix}.{name}", None)
+
     def name_of(self, module: ModuleType) -> str:
         """The name by which the project knows a module, such as ``my.geometry``."""
         return module.__name__.removeprefix(f"{self._prefix}.")

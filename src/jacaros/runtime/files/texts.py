@@ -3,7 +3,9 @@
 import os
 import re
 import stat
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from heapq import nlargest
 from itertools import islice
 from pathlib import Path
@@ -13,6 +15,28 @@ LARGEST: Final = 64 * 2**20
 """Maximum number of bytes of a program, project, mapping, world or parameter file."""
 _FOLDER: Final = "it is a directory"
 _SKIPPED: Final = frozenset({"__pycache__", "node_modules", "build", "dist"})
+
+
+_unsaved: ContextVar[Mapping[str, str]] = ContextVar("unsaved")
+
+
+@contextmanager
+def unsaved(texts: Mapping[str, str]) -> Iterator[None]:
+    """Read these texts instead of the files, in this thread or task only: an editor has not saved them.
+
+    Args:
+        texts: by the real path of the file (`os.path.realpath`). The file may be missing.
+    """
+    token = _unsaved.set(texts)
+    try:
+        yield
+    finally:
+        _unsaved.reset(token)
+
+
+def _unsaved_text(path: Path | str) -> str | None:
+    texts = _unsaved.get(None)
+    return texts.get(os.path.realpath(path)) if texts else None
 
 
 class UnusableFile(OSError):
@@ -33,7 +57,7 @@ def files_below(folder: Path, suffixes: Sequence[str]) -> Iterator[Path]:
 def is_file(path: Path) -> bool:
     """Return whether a path leads to a file; False for a name that no file can have."""
     try:
-        return path.is_file()
+        return path.is_file() or _unsaved_text(path) is not None
     except (OSError, ValueError):
         return False
 
@@ -49,6 +73,8 @@ def file_bytes(path: Path | str, largest: int = LARGEST) -> bytes:
         FileNotFoundError: it does not exist.
         UnusableFile: it is not a regular file, too large, or cannot be read.
     """
+    if (text := _unsaved_text(path)) is not None:
+        return text.encode("utf-8", "replace")  # an editor may send half a surrogate pair
     try:
         # A pipe without a writer, and some files of the kernel, would block.
         file = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))

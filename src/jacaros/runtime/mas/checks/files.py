@@ -1,7 +1,8 @@
 """Check programs and projects without running them."""
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from pathlib import Path
@@ -15,7 +16,7 @@ from jacaros.agents.checks.handlers import missing_marks, never_posted
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import AslError, Diagnostic, SourceFile
 from jacaros.agents.language.loader import new_names, read_program
-from jacaros.agents.mind.actions.internal_action import STANDARD
+from jacaros.agents.mind.actions.internal_action import STANDARD, InternalAction
 from jacaros.robots.registry import type_finder
 from jacaros.runtime.files.python_modules import ModuleUnreadable, ProjectModules
 from jacaros.runtime.files.texts import file_text, files_below, is_file
@@ -65,19 +66,27 @@ class Findings:
         files: all files that have been read: programs, included files and projects.
         unseen: Python files with names that are known only after running them; None if they are run.
         observables: reads the properties and signals of artifact types, each once in a run.
+        checked: the projects and lone programs, with what has been read of them.
     """
 
     diagnostics: list[Diagnostic] = field(default_factory=list)
     files: set[Path] = field(default_factory=set)
     unseen: set[Path] | None = field(default_factory=set)
     observables: Observables = field(default_factory=Observables)
+    checked: "list[Checked]" = field(default_factory=list)
 
     def apart(self) -> "Findings":
         """Return the empty findings of a further project of the same run."""
-        return Findings(unseen=self.unseen, observables=self.observables)
+        return Findings(unseen=self.unseen, observables=self.observables, checked=self.checked)
 
 
-def check_files(paths: Sequence[Path], mappings: Sequence[str] = (), imports: bool = False) -> Findings:
+def check_files(
+    paths: Sequence[Path],
+    mappings: Sequence[str] = (),
+    imports: bool = False,
+    observables: Observables | None = None,
+    named: bool = True,
+) -> Findings:
     """Check programs, projects with the programs of their agents, and whole folders.
 
     In a folder, a program is checked by itself only if no project there names it and no other program includes it.
@@ -87,8 +96,21 @@ def check_files(paths: Sequence[Path], mappings: Sequence[str] = (), imports: bo
         paths: files and folders.
         mappings: mapping files for programs that are given by themselves. Their actions are compared with these.
         imports: run the Python files of projects, to know everything that they declare. Otherwise they are only parsed.
+        observables: those of an earlier call, which save time.
+        named: report a YAML file in *paths* of another kind, instead of skipping it.
     """
-    findings = Findings(unseen=None if imports else set())
+    findings = Findings(unseen=None if imports else set(), observables=observables or Observables())
+    try:
+        _check_paths(paths, mappings, findings, named)
+    finally:
+        for each in findings.checked if not imports else ():
+            each.forget()
+    findings.diagnostics += map(_not_imported, sorted(findings.unseen or ()))
+    findings.diagnostics = sorted(dict.fromkeys(wanted(findings.diagnostics)), key=place)
+    return findings
+
+
+def _check_paths(paths: Sequence[Path], mappings: Sequence[str], findings: Findings, named: bool) -> None:
     for path in paths:
         if path.is_dir():
             _check_folder(path, findings)
@@ -97,14 +119,11 @@ def check_files(paths: Sequence[Path], mappings: Sequence[str] = (), imports: bo
         elif path.suffix == ".py":
             _check_python_agent(path, findings)
         elif path.suffix in MAPPINGS:
-            _check_yaml(path, findings)
+            _check_yaml(path, findings, named)
         elif mappings:
             _check_program_with_mappings(path, mappings, findings)
         else:
             _check_lone_program(path, findings)
-    findings.diagnostics += map(_not_imported, sorted(findings.unseen or ()))
-    findings.diagnostics = sorted(dict.fromkeys(wanted(findings.diagnostics)), key=place)
-    return findings
 
 
 def _not_imported(file: Path) -> Diagnostic:
@@ -151,7 +170,7 @@ def _check_project(path: Path, findings: Findings) -> Set[Path]:
     deployment = reading.deployment
     findings.files |= reading.used
     findings.diagnostics += map(_of_project, reading.diagnostics)
-    checked = _Checked(deployment, (deployment.base_path, *deployment.source_paths), findings)
+    checked = Checked(deployment, (deployment.base_path, *deployment.source_paths), findings)
     checked.check_classes()
     different = {(agent.source_path, agent.beliefs, agent.goals): agent for agent in deployment.agents}
     for agent in different.values():
@@ -176,7 +195,7 @@ def _check_project(path: Path, findings: Findings) -> Set[Path]:
 def _check_lone_program(path: Path, findings: Findings) -> Set[Path]:
     """Check a program that no project names. Return the files that it includes."""
     folders = source_folders(path.parent)
-    checked = _Checked(Deployment(path.stem, path.parent), folders, findings)
+    checked = Checked(Deployment(path.stem, path.parent), folders, findings)
     if checked.check_program(AgentSpec(path.stem, path)):
         checked.check_beliefs(is_lone=True)
         checked.check_mappings()
@@ -201,7 +220,7 @@ def _check_program_with_mappings(path: Path, mappings: Sequence[str], findings: 
 
     agent = AgentSpec(path.stem, path, path.stem)
     lone = Deployment(path.stem, path.parent, (agent,), artifact_environment=True)
-    checked = _Checked(lone, (path.parent,), findings)
+    checked = Checked(lone, (path.parent,), findings)
     is_read = checked.check_program(agent)
     for name in mappings:
         file = find_mapping(name, (Path(), path.parent))
@@ -221,29 +240,53 @@ def _check_program_with_mappings(path: Path, mappings: Sequence[str], findings: 
 def _check_python_agent(path: Path, findings: Findings) -> None:
     findings.files.add(path.resolve())
     agent = AgentSpec(path.stem, path, path.stem)
-    _Checked(Deployment(path.stem, path.parent, (agent,)), (path.parent,), findings).check_classes()
+    Checked(Deployment(path.stem, path.parent, (agent,)), (path.parent,), findings).check_classes()
 
 
-class _Checked:
+class Checked:
     """A project, or a lone program, with what belongs to it.
 
     Attributes:
         deployment: its declarations.
         programs: the programs without errors, with their agents.
+        read: what is valid of all programs.
     """
 
     def __init__(self, deployment: Deployment, folders: tuple[Path, ...], findings: Findings) -> None:
         self.deployment, self._folders, self._findings = deployment, folders, findings
         self._modules = ProjectModules(*folders, unseen=findings.unseen)
+        findings.checked.append(self)
         self._code = PythonCode(self._modules)
         self._path = SourcePath(folders)
         self._names = new_names(self._code.functions, self._code.actions)
         self._walked: dict[int, tuple[nodes.Plan, nodes.ByKind]] = {}
         self.programs: list[tuple[AgentSpec, nodes.Program]] = []
+        self.read: list[nodes.Program] = []
 
     @cached_property
     def _find_type(self) -> "FindType":
         return type_finder(self._modules)
+
+    @property
+    def actions(self) -> Mapping[str, InternalAction]:
+        """The internal actions that programs can use: the standard ones, and those of the project."""
+        return self._code.actions
+
+    def known_types(self) -> "list[type[Artifact]]":
+        """Return the artifact types that the project and its programs name, without those that are unknown."""
+        spaces = self.deployment.workspaces
+        names = [artifact.type_name for workspace in spaces for artifact in workspace.artifacts]
+        names += [each.name for program in self.read for each in named_types(program).found]
+        found: dict[type[Artifact], None] = {}
+        for name in dict.fromkeys(names):
+            with suppress(Exception):  # an unknown type, or a module with an error, has been reported
+                found[self._find_type(name)] = None
+        self.forget()
+        return list(found)
+
+    def forget(self) -> None:
+        """Let the modules of the project go once nothing refers to them."""
+        self._modules.forget()
 
     def check_classes(self) -> None:
         found: dict[str, Diagnostic] = {}  # a class without effect is reported once
@@ -277,6 +320,7 @@ class _Checked:
             return False
         program, diagnostics = read_program(sources[0], include, self._names.for_program())
         program = replace(program, walked=self._walked)
+        self.read.append(program)
         diagnostics += [replace(error, code="unreadable-file") for error in code.take_errors()]
         errors = [diagnostic for diagnostic in diagnostics if diagnostic.severity == "error"]
         known = KnownActions(code.actions, code.help, code.is_unseen)
@@ -447,7 +491,7 @@ class _Checked:
             if not any(each.source_path in own.values() for each in agents):
                 continue
             folders = (deployment.base_path, *deployment.source_paths)
-            other = _Checked(deployment, folders, self._findings.apart())
+            other = Checked(deployment, folders, self._findings.apart())
             for agent in agents:
                 if agent.agent_class or agent.is_python or not other.check_program(agent):
                     return None

@@ -9,9 +9,9 @@ Value(kind='number', options=(), unit='percent', whole=True)
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from functools import cache
 from itertools import chain
 from typing import TYPE_CHECKING, Final
+from weakref import WeakKeyDictionary
 
 from jacaros.agents.checks.flow import UNKNOWN, Adder, Value
 from jacaros.artifacts.env.class_sources import ClassSources
@@ -19,6 +19,8 @@ from jacaros.artifacts.env.manual import described_usages, own_classes, usages_i
 
 if TYPE_CHECKING:
     from jacaros.artifacts.env.artifact import Artifact
+
+    _Read = Callable[[type], list[tuple[str, Adder]]]
 
 _OPENS: Final = re.compile(r"define_operation|make_artifact|create\(")
 """Code that adds operations at run time."""
@@ -39,8 +41,8 @@ class Observables:
 
     def __init__(self) -> None:
         self._sources = ClassSources()
-        self._described: Callable[[type], list[tuple[str, Adder]]] = cache(_described)
-        self._written: Callable[[type], list[tuple[str, Adder]]] = cache(self._in_code)
+        self._described = _each_once(_described)
+        self._written = _each_once(self._in_code)
 
     def of(self, types: "Iterable[type[Artifact]]") -> dict[str, list[Adder]] | None:
         """Return the properties and signals of artifacts, by name; None if code computes their names."""
@@ -74,6 +76,19 @@ class Observables:
         """Return whether artifacts of a type may define operations, or create other artifacts, at run time."""
         kinds = [each for each in artifact_type.__mro__ if not each.__module__.startswith(_CLOSED)]
         return any(self._sources.mentions(each, _OPENS) is not False for each in kinds if each is not object)
+
+
+def _each_once(read: "_Read") -> "_Read":
+    """Return the function with a memory. It keeps no type: a language server reads those of a project with each edit."""
+    known: WeakKeyDictionary[type, list[tuple[str, Adder]]] = WeakKeyDictionary()
+
+    def remembered(kind: type) -> list[tuple[str, Adder]]:
+        found = known.get(kind)
+        if found is None:
+            found = known[kind] = read(kind)
+        return found
+
+    return remembered
 
 
 def parameter_units(types: "Iterable[type[Artifact]]") -> dict[tuple[str, int], Sequence[str]]:

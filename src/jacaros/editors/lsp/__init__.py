@@ -1,0 +1,1 @@
+"""``jacaros lsp``: the language server. It needs the extra ``lsp``."""

@@ -1,0 +1,125 @@
+"""The projects of the files that are open in an editor, and what the checker reports about them."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from jacaros.agents.language.diagnostics import Diagnostic, SourceFile
+from jacaros.editors.lsp.membership import PROGRAM, candidates, members
+from jacaros.runtime.files.texts import unsaved
+from jacaros.runtime.mas.checks.files import MAPPINGS, PROJECTS, Checked, check_files
+from jacaros.runtime.mas.checks.observables import Observables
+
+SUFFIXES = (PROGRAM, *PROJECTS, *MAPPINGS)
+"""Files that are checked."""
+
+
+@dataclass
+class Unit:
+    """What is checked in one pass: a project with its programs, a lone program, or a lone YAML file.
+
+    Attributes:
+        path: the file that ``jacaros check`` would be given.
+        files: all files that were read.
+        found: the diagnostics, by file; those without a place belong to `path`.
+        checked: the parsed project; None for YAML files.
+    """
+
+    path: Path
+    files: frozenset[Path]
+    found: dict[Path, list[Diagnostic]] = field(default_factory=dict)
+    checked: Checked | None = None
+
+
+class Projects:
+    """Finds what a file belongs to, and checks it. It may run in any thread, but only in one at a time.
+
+    Args:
+        roots: the folders that are open in the editor.
+    """
+
+    def __init__(self, roots: Iterable[Path] = ()) -> None:
+        self.roots = [each.resolve() for each in roots]
+        self._observables = Observables()
+        self._units: dict[Path, Unit] = {}
+        self._members: dict[Path, set[Path]] = {}
+
+    def update(self, changed: Iterable[Path], texts: Mapping[Path, str]) -> dict[Path, list[Diagnostic]]:
+        """Check everything that changed files belong to. Return the diagnostics of all files concerned.
+
+        Args:
+            changed: files that were opened, edited, saved or closed.
+            texts: the texts of open files.
+        """
+        with unsaved({str(path): text for path, text in texts.items()}):
+            concerned: set[Path] = set()
+            checked: set[Path] = set()
+            for file in dict.fromkeys(changed):
+                for path in self._paths_of(file):
+                    if path not in checked:
+                        checked.add(path)
+                        concerned |= self._check(path)
+                if file in texts and not self.units_of(file):  # it is no longer part of what it was part of
+                    self._members.pop(file, None)
+                    concerned |= self._check(file)
+            concerned |= self._forget_unused(texts)
+        return {file: self.diagnostics_of(file) for file in concerned}
+
+    def files_changed(self) -> None:
+        """Look for the projects of files again: files have been created, removed or changed outside the editor."""
+        self._members.clear()
+
+    def units_of(self, file: Path) -> list[Unit]:
+        """Return the units that a file belongs to, as of the last check."""
+        return [unit for unit in self._units.values() if file in unit.files]
+
+    def diagnostics_of(self, file: Path) -> list[Diagnostic]:
+        """Return what all units report about a file, each diagnostic once."""
+        return list(dict.fromkeys(each for unit in self.units_of(file) for each in unit.found.get(file, ())))
+
+    def _paths_of(self, file: Path) -> list[Path]:
+        """Return the projects, or else the programs, that a file belongs to; otherwise the file."""
+        known = [unit.path for unit in self.units_of(file)]
+        if known and file in self._members:
+            return known
+        others = candidates(self.roots, file)
+        for suffixes in (PROJECTS, (PROGRAM,)):
+            found = [each for each in others if each.suffix in suffixes and file in self._members_of(each)]
+            if found:
+                used = {each for path in found for each in self._members_of(path) if each != path}
+                self._members_of(file)
+                return [each for each in found if each not in used]
+        self._members_of(file)
+        return [file]
+
+    def _members_of(self, path: Path) -> set[Path]:
+        found = self._members.get(path)
+        if found is None:
+            found = self._members[path] = members(path) if path.suffix not in MAPPINGS else {path}
+        return found
+
+    def _check(self, path: Path) -> set[Path]:
+        """Check one unit. Return the files whose diagnostics may have changed."""
+        findings = check_files([path], observables=self._observables, named=False)
+        by_file: dict[Path, list[Diagnostic]] = {}
+        for each in findings.diagnostics:
+            file = path if each.span is None else _file_of(each.span.file, path)
+            by_file.setdefault(file, []).append(each)
+        files = frozenset(each.resolve() for each in findings.files) | {path}
+        before = self._units.get(path)
+        checked = next(iter(findings.checked), None)
+        self._units[path] = Unit(path, files, by_file, checked)
+        self._members[path] = set(files)
+        return {*files, *by_file, *(before.found if before is not None else ())}
+
+    def _forget_unused(self, texts: Mapping[Path, str]) -> set[Path]:
+        """Drop the units none of whose files are open."""
+        gone = [unit for unit in self._units.values() if unit.files.isdisjoint(texts)]
+        for unit in gone:
+            del self._units[unit.path]
+        return {file for unit in gone for file in unit.found}
+
+
+def _file_of(file: SourceFile, path: Path) -> Path:
+    """Return the file of a text; declarations of agents are part of the project file."""
+    return path if file.name.startswith("<") else Path(file.name).resolve()

@@ -1,0 +1,29 @@
+"""``jacaros lsp``."""
+
+import os
+import sys
+from importlib.util import find_spec
+
+import click
+
+from jacaros.runtime.cli.usage import examples, usage_error
+
+
+@click.command(
+    "lsp",
+    epilog=examples("jacaros lsp", "pip install 'jacaros[lsp]'        what it needs"),
+)
+def command() -> None:
+    """Run the language server for editors, on the standard input and output.
+
+    Your editor starts this command. Python code of the project is read, not run.
+    """  # fmt: skip
+    if find_spec("pygls") is None:
+        raise usage_error("the language server needs the Python package pygls", 'pip install "jacaros[lsp]"')
+    from jacaros.editors.lsp.server import new_server  # here: it imports much
+
+    # The output belongs to the protocol: whatever else is printed goes to the standard error output.
+    sys.stdout.flush()
+    with os.fdopen(os.dup(1), "wb") as output:
+        os.dup2(2, 1)
+        new_server().start_io(sys.stdin.buffer, output)
