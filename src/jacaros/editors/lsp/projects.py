@@ -6,6 +6,7 @@ from pathlib import Path
 
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile
 from jacaros.editors.lsp.membership import PROGRAM, candidates, members
+from jacaros.editors.symbols import Index
 from jacaros.runtime.files.texts import unsaved
 from jacaros.runtime.mas.checks.files import MAPPINGS, PROJECTS, Checked, check_files
 from jacaros.runtime.mas.checks.observables import Observables
@@ -23,12 +24,19 @@ class Unit:
         files: all files that were read.
         found: the diagnostics, by file; those without a place belong to `path`.
         checked: the parsed project; None for YAML files.
+        index: the meaning of its names; None until it has been made.
     """
 
     path: Path
     files: frozenset[Path]
     found: dict[Path, list[Diagnostic]] = field(default_factory=dict)
     checked: Checked | None = None
+    index: Index | None = None
+
+    def name_of(self, file: Path) -> str:
+        """Return the name of a file in the places of its programs."""
+        sources = self.checked.sources if self.checked is not None else ()
+        return next((each for each in sources if Path(each).resolve() == file), file.as_posix())
 
 
 class Projects:
@@ -42,6 +50,7 @@ class Projects:
         self.roots = [each.resolve() for each in roots]
         self._observables = Observables()
         self._units: dict[Path, Unit] = {}
+        self._indexed: dict[Path, Unit] = {}
         self._members: dict[Path, set[Path]] = {}
 
     def update(self, changed: Iterable[Path], texts: Mapping[Path, str]) -> dict[Path, list[Diagnostic]]:
@@ -65,13 +74,30 @@ class Projects:
             concerned |= self._forget_unused(texts)
         return {file: self.diagnostics_of(file) for file in concerned}
 
+    def index(self) -> bool:
+        """Make the index of each project that has been checked since. Until then, the one before serves its programs.
+
+        Return whether one has its first index.
+        """
+        is_first = False
+        for unit in [*self._units.values()]:
+            if unit.checked is not None and (unit.index is None or self._indexed.get(unit.path) is not unit):
+                agents = [each.name for each in unit.checked.deployment.agents]
+                index = Index(unit.checked.known_types(), dict(unit.checked.actions), agents)
+                for name, program in unit.checked.read.items():
+                    index.put(name, program)
+                is_first |= unit.index is None
+                unit.index = index
+                self._indexed[unit.path] = unit
+        return is_first
+
     def files_changed(self) -> None:
         """Look for the projects of files again: files have been created, removed or changed outside the editor."""
         self._members.clear()
 
     def units_of(self, file: Path) -> list[Unit]:
         """Return the units that a file belongs to, as of the last check."""
-        return [unit for unit in self._units.values() if file in unit.files]
+        return [unit for unit in [*self._units.values()] if file in unit.files]
 
     def diagnostics_of(self, file: Path) -> list[Diagnostic]:
         """Return what all units report about a file, each diagnostic once."""
@@ -107,8 +133,9 @@ class Projects:
             by_file.setdefault(file, []).append(each)
         files = frozenset(each.resolve() for each in findings.files) | {path}
         before = self._units.get(path)
+        index = before.index if before is not None else None
         checked = next(iter(findings.checked), None)
-        self._units[path] = Unit(path, files, by_file, checked)
+        self._units[path] = Unit(path, files, by_file, checked, index)
         self._members[path] = set(files)
         return {*files, *by_file, *(before.found if before is not None else ())}
 
@@ -117,6 +144,7 @@ class Projects:
         gone = [unit for unit in self._units.values() if unit.files.isdisjoint(texts)]
         for unit in gone:
             del self._units[unit.path]
+            self._indexed.pop(unit.path, None)
         return {file for unit in gone for file in unit.found}
 
 

@@ -8,12 +8,16 @@ from typing import Final
 from lsprotocol import types
 from pygls.lsp.server import LanguageServer
 
-from jacaros.agents.language.diagnostics import Diagnostic
+from jacaros.agents.language.diagnostics import Diagnostic, SourceFile
+from jacaros.editors.lsp.answers import Answers
 from jacaros.editors.lsp.diagnostics import as_shown
+from jacaros.editors.lsp.membership import roots_of
 from jacaros.editors.lsp.positions import path_of, uri_of
 from jacaros.editors.lsp.projects import SUFFIXES, Projects
+from jacaros.editors.symbols import Index, Position
 from jacaros.version import VERSION
 
+_WATCHED: Final = "**/*.{asl,jcm,mas2j,py,yaml,yml,jsonl,gz}"
 PAUSE: Final = 0.03
 """Seconds between an edit and the check, so that fast typing is checked less often."""
 
@@ -30,14 +34,72 @@ class Server(LanguageServer):
         super().__init__("jacaros", VERSION, text_document_sync_kind=types.TextDocumentSyncKind.Full)
         self.projects = Projects()
         self._changed: dict[Path, None] = {}
-        self._published: set[Path] = set()
+        self._found: dict[Path, list[Diagnostic]] = {}
+        self._nothing = Index()
         self._checking: asyncio.Task[None] | None = None
+        self._watches = False
 
     def begin(self) -> None:
         """Take the folders that are open in the editor."""
         folders = (path_of(each) for each in self.workspace.folders)
         root = path_of(self.workspace.root_uri or "")
         self.projects.roots = [each for each in (*folders, root) if each is not None]
+
+        self._watch()
+
+    def _watch(self) -> None:
+        """Have the client report files that change outside the editor, or in other kinds of documents."""
+        wanted = self.client_capabilities.workspace
+        files = wanted.did_change_watched_files if wanted is not None else None
+        if files is None or not files.dynamic_registration or self._watches:
+            return
+        self._watches = True
+        options = types.DidChangeWatchedFilesRegistrationOptions([types.FileSystemWatcher(_WATCHED)])
+        kind = types.WORKSPACE_DID_CHANGE_WATCHED_FILES
+        registration = types.Registration("jacaros-files", kind, options)
+        self.client_register_capability(types.RegistrationParams([registration]))
+
+    def files_changed(self) -> None:
+        """Check everything again: files have changed outside the editor."""
+        self.projects.files_changed()
+        self.changed(*self.texts())
+
+    # What is asked about a document.
+
+    def answers(self, uri: str) -> Answers:
+        """Return what converts answers about a document."""
+        path = path_of(uri)
+        text = self.workspace.get_text_document(uri).source.replace("\r\n", "\n").replace("\r", "\n")
+        units = self.projects.units_of(path) if path is not None else []
+        name = units[0].name_of(path) if path is not None and units else str(path or uri)
+        document = self.client_capabilities.text_document
+        completion = document.completion if document is not None else None
+        item = completion.completion_item if completion is not None else None
+        has_snippets = item is not None and bool(item.snippet_support)
+        return Answers(SourceFile(name, text), self.workspace.position_codec, has_snippets)
+
+    def asked(self, uri: str, place: types.Position) -> tuple[Answers, Position]:
+        """Return what converts answers about a document, and the place that a request is about."""
+        answers = self.answers(uri)
+        return answers, Position(*answers.positions.from_client(place))
+
+    def index_of(self, uri: str) -> Index:
+        """Return the names that a document can use; those of the language until its project has been read."""
+        path = path_of(uri)
+        units = self.projects.units_of(path) if path is not None else []
+        return next((each.index for each in units if each.index is not None), self._nothing)
+
+    def found_in(self, uri: str, file: SourceFile) -> list[Diagnostic]:
+        """Return the diagnostics of a document, unless its text has changed since."""
+        path = path_of(uri)
+        found = self._found.get(path, []) if path is not None else []
+        return [each for each in found if each.span is not None and each.span.file.lines == file.lines]
+
+    def folders_of(self, path: Path) -> Iterable[Path]:
+        """Return the folders that the project of a file is in."""
+        return roots_of(self.projects.roots, path)
+
+    # Checking.
 
     def texts(self) -> dict[Path, str]:
         """Return the open texts, by file."""
@@ -62,38 +124,22 @@ class Server(LanguageServer):
                 self.window_log_message(types.LogMessageParams(types.MessageType.Error, text))
             else:
                 self._publish(found.items())
+                await self._index()
+
+    async def _index(self) -> None:
+        """Read the meaning of names again, after the diagnostics: a user waits for these."""
+        is_first = await asyncio.to_thread(self.projects.index)
+        wanted = self.client_capabilities.workspace
+        if is_first and wanted is not None and wanted.inlay_hint and wanted.inlay_hint.refresh_support:
+            await self.workspace_inlay_hint_refresh_async(None)
 
     def _publish(self, found: Iterable[tuple[Path, list[Diagnostic]]]) -> None:
         for path, diagnostics in found:
-            if not diagnostics and path not in self._published:
+            if not diagnostics and path not in self._found:
                 continue
-            (self._published.add if diagnostics else self._published.discard)(path)
+            if diagnostics:
+                self._found[path] = diagnostics
+            else:
+                del self._found[path]
             shown = [as_shown(each, self.workspace.position_codec) for each in diagnostics]
             self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri_of(path), shown))
-
-
-def new_server() -> Server:
-    """Return a server with all that it can do."""
-    server = Server()
-
-    @server.feature(types.INITIALIZED)
-    def initialized(ls: Server, _: types.InitializedParams) -> None:
-        ls.begin()
-
-    @server.feature(types.TEXT_DOCUMENT_DID_OPEN)
-    def opened(ls: Server, params: types.DidOpenTextDocumentParams) -> None:
-        ls.changed(path_of(params.text_document.uri))
-
-    @server.feature(types.TEXT_DOCUMENT_DID_CHANGE)
-    def edited(ls: Server, params: types.DidChangeTextDocumentParams) -> None:
-        ls.changed(path_of(params.text_document.uri))
-
-    @server.feature(types.TEXT_DOCUMENT_DID_SAVE)
-    def saved(ls: Server, params: types.DidSaveTextDocumentParams) -> None:
-        ls.changed(path_of(params.text_document.uri))
-
-    @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
-    def closed(ls: Server, params: types.DidCloseTextDocumentParams) -> None:
-        ls.changed(path_of(params.text_document.uri))
-
-    return server

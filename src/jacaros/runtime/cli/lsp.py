@@ -20,7 +20,7 @@ def command() -> None:
     """  # fmt: skip
     if find_spec("pygls") is None:
         raise usage_error("the language server needs the Python package pygls", 'pip install "jacaros[lsp]"')
-    from jacaros.editors.lsp.server import new_server  # here: it imports much
+    from jacaros.editors.lsp.features import new_server  # here: it imports much
 
     # The output belongs to the protocol: whatever else is printed goes to the standard error output.
     sys.stdout.flush()

@@ -293,10 +293,25 @@ def _likeness(name: str, other: str) -> float:
     return matcher.ratio()
 
 
+class Suggestion(str):
+    """The question for names that may be meant, for an editor that writes one of them.
+
+    Attributes:
+        names: the names that may be meant.
+    """
+
+    names: tuple[str, ...] = ()
+
+
 def did_you_mean(names: Iterable[str], otherwise: str = "") -> str:
     """Return the question for *names* that may be meant; without any, *otherwise*."""
-    listed = " or ".join(f"`{name}`" for name in names)
-    return f"did you mean {listed}?" if listed else otherwise
+    meant = tuple(names)
+    if not meant:
+        return otherwise
+    listed = " or ".join(f"`{name}`" for name in meant)
+    question = Suggestion(f"did you mean {listed}?")
+    question.names = meant
+    return question
 
 
 def suggestion(name: str, known: Iterable[str], otherwise: str = "", most: int = 1) -> str:

@@ -249,7 +249,8 @@ class Checked:
     Attributes:
         deployment: its declarations.
         programs: the programs without errors, with their agents.
-        read: what is valid of all programs.
+        read: what is valid of all programs, by the names of their files.
+        sources: the names of all files of programs, with included ones.
     """
 
     def __init__(self, deployment: Deployment, folders: tuple[Path, ...], findings: Findings) -> None:
@@ -261,7 +262,8 @@ class Checked:
         self._names = new_names(self._code.functions, self._code.actions)
         self._walked: dict[int, tuple[nodes.Plan, nodes.ByKind]] = {}
         self.programs: list[tuple[AgentSpec, nodes.Program]] = []
-        self.read: list[nodes.Program] = []
+        self.read: dict[str, nodes.Program] = {}
+        self.sources: set[str] = set()
 
     @cached_property
     def _find_type(self) -> "FindType":
@@ -276,7 +278,7 @@ class Checked:
         """Return the artifact types that the project and its programs name, without those that are unknown."""
         spaces = self.deployment.workspaces
         names = [artifact.type_name for workspace in spaces for artifact in workspace.artifacts]
-        names += [each.name for program in self.read for each in named_types(program).found]
+        names += [each.name for program in self.read.values() for each in named_types(program).found]
         found: dict[type[Artifact], None] = {}
         for name in dict.fromkeys(names):
             with suppress(Exception):  # an unknown type, or a module with an error, has been reported
@@ -320,7 +322,8 @@ class Checked:
             return False
         program, diagnostics = read_program(sources[0], include, self._names.for_program())
         program = replace(program, walked=self._walked)
-        self.read.append(program)
+        self.read[sources[0].name] = program
+        self.sources |= {each.name for each in sources}
         diagnostics += [replace(error, code="unreadable-file") for error in code.take_errors()]
         errors = [diagnostic for diagnostic in diagnostics if diagnostic.severity == "error"]
         known = KnownActions(code.actions, code.help, code.is_unseen)

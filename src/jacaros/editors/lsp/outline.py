@@ -1,0 +1,166 @@
+"""The parts of a program or project file, for outlines, folding and search."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Final
+
+from lsprotocol import types
+
+from jacaros.agents.language import nodes
+from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span
+from jacaros.agents.language.lexer import Comment, tokenize
+from jacaros.agents.language.loader import read_program
+from jacaros.agents.language.lowering import format_term
+from jacaros.editors.lsp.positions import Positions
+from jacaros.runtime.mas.checks.files import PROJECTS
+from jacaros.runtime.mas.project.declarations import ProjectPart
+from jacaros.runtime.mas.project.reading import reader_of
+
+_LONGEST: Final = 60
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One part of a text.
+
+    Attributes:
+        name: as the outline shows it.
+        kind: of the part, for its icon.
+        span: the whole part.
+        chosen: its name in the text, which is selected when you choose it.
+        detail: shown after the name.
+        node: the node of a program.
+        children: the parts within.
+    """
+
+    name: str
+    kind: types.SymbolKind
+    span: Span
+    chosen: Span
+    detail: str = ""
+    node: nodes.Node | None = None
+    children: tuple["Entry", ...] = field(default=())
+
+
+def outline_of(file: SourceFile) -> list[Entry]:
+    """Return the parts of a text, as far as it can be parsed; none of other kinds of files."""
+    if file.name.endswith(".asl"):
+        program, _ = read_program(file)
+        return [each for each in _of_program(program) if each.span.file is file]
+    if file.name.endswith(PROJECTS):
+        reported: list[Diagnostic] = []
+        return list(_of_project(reader_of(file, reported).read()))
+    return []
+
+
+def _of_program(program: nodes.Program) -> Iterator[Entry]:
+    clauses: list[nodes.Node] = [*program.beliefs, *program.goals, *program.plans]
+    known = [each for each in clauses if each.span is not None]
+    for clause in sorted(known, key=lambda each: (each.span.line, each.span.column) if each.span else (0, 0)):
+        yield from _of_clause(clause)
+
+
+def _of_clause(clause: nodes.Node) -> Iterator[Entry]:
+    span = clause.span
+    if span is None:
+        return
+    match clause:
+        case nodes.Plan():
+            trigger, label = clause.trigger, clause.label
+            name = f"{trigger.operator}{trigger.kind}{_short(trigger.literal)}"
+            detail = (
+                f"@{label.functor}" if isinstance(label, nodes.Literal) and label.span is not None else ""
+            )
+            inner = tuple(each for plan in clause.subplans for each in _of_clause(plan))
+            yield Entry(name, types.SymbolKind.Event, span, trigger.span or span, detail, clause, inner)
+        case nodes.Rule():
+            head = clause.head
+            yield Entry(_short(head), types.SymbolKind.Function, span, head.span or span, "rule", clause)
+        case nodes.Literal():
+            yield Entry(_short(clause), types.SymbolKind.Property, span, span, "", clause)
+
+
+def _short(term: nodes.Term) -> str:
+    text = format_term(term)
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
+
+
+def _of_project(part: ProjectPart) -> Iterator[Entry]:
+    for agent in part.agents:
+        yield Entry(agent.name, types.SymbolKind.Class, agent.span, agent.span, agent.source or "agent")
+    for space in part.workspaces:
+        inner = tuple(
+            Entry(
+                each.spec.name, types.SymbolKind.Object, each.spec.span, each.spec.span, each.spec.type_name
+            )
+            for each in space.artifacts
+            if each.spec.span is not None
+        )
+        yield Entry(space.name, types.SymbolKind.Namespace, space.span, space.span, "workspace", None, inner)
+    for node in part.nodes:
+        if node.span is not None:
+            yield Entry(node.name, types.SymbolKind.Module, node.span, node.span, "node")
+
+
+def symbols(entries: list[Entry], positions: Positions) -> list[types.DocumentSymbol]:
+    """Return the outline of a document. The range of a part includes its parts."""
+    return [_symbol(each, positions) for each in entries]
+
+
+def _symbol(entry: Entry, positions: Positions) -> types.DocumentSymbol:
+    children = [_symbol(each, positions) for each in entry.children]
+    whole, chosen = positions.range(entry.span), positions.range(entry.chosen)
+    last = max([whole.end, chosen.end, *(each.range.end for each in children)], key=_order)
+    first = min([whole.start, chosen.start], key=_order)
+    return types.DocumentSymbol(
+        entry.name or "?",
+        entry.kind,
+        types.Range(first, last),
+        chosen,
+        entry.detail or None,
+        children=children,
+    )
+
+
+def _order(place: types.Position) -> tuple[int, int]:
+    return place.line, place.character
+
+
+def folds(file: SourceFile, entries: list[Entry]) -> list[types.FoldingRange]:
+    """Return the foldable ranges: clauses, blocks in braces of project files, and comments of several lines."""
+    found = [
+        types.FoldingRange(first - 1, last - 1)
+        for first, last in sorted({*_of_entries(entries), *_braces(file)})
+        if last > first
+    ]
+    return [*found, *_of_comments(file)]
+
+
+def _of_entries(entries: list[Entry]) -> Iterator[tuple[int, int]]:
+    for each in entries:
+        yield each.span.line, each.span.end_line
+        yield from _of_entries(list(each.children))
+
+
+def _braces(file: SourceFile) -> Iterator[tuple[int, int]]:
+    opened: list[int] = []
+    for token in tokenize(file, lambda _: None):
+        if token.kind == "{":
+            opened.append(token.line)
+        elif token.kind == "}" and opened:
+            yield opened.pop(), token.line - 1
+
+
+def _of_comments(file: SourceFile) -> Iterator[types.FoldingRange]:
+    comments: list[Comment] = []
+    tokenize(file, lambda _: None, comments)
+    first = last = 0
+    for comment in [*comments, Comment("", 0, 0, 0)]:
+        end = comment.line + comment.text.count("\n")
+        own = not file.lines[comment.line - 1][: comment.column - 1].strip() if comment.line else False
+        if own and first and comment.line == last + 1:
+            last = end
+            continue
+        if last > first:
+            yield types.FoldingRange(first - 1, last - 1, kind=types.FoldingRangeKind.Comment)
+        first, last = (comment.line, end) if own else (0, 0)
