@@ -17,7 +17,7 @@ from typing import Final
 from jacaros.agents.checks.formulas import CONDITIONED, conditions, indicator_of, labelled
 from jacaros.agents.language import nodes
 from jacaros.agents.language.cursor import MOST_ASKED, is_slip_of
-from jacaros.agents.language.diagnostics import Diagnostic, problem
+from jacaros.agents.language.diagnostics import Diagnostic, Span, cure, problem
 from jacaros.agents.language.nodes import UNDECLARED, ByKind, Declaration, parts_of
 from jacaros.agents.language.term_parser import PERFORMATIVES
 from jacaros.agents.terms.functions import ARITIES
@@ -196,7 +196,7 @@ def goals_without_plan(program: nodes.Program, found: ByKind, known: KnownAction
         if wanted in handled or wanted in reported or wanted[1:] in everywhere:
             continue
         reported.add(wanted)
-        help = _meant_goal(wanted, with_plan & handled) if len(reported) <= MOST_ASKED else None
+        help = _meant_goal(goal, with_plan & handled) if len(reported) <= MOST_ASKED else None
         yield problem("unknown-goal", f"no plan for `{_goal_text(wanted)}`", goal.span, help)
 
 
@@ -228,8 +228,9 @@ def _goal_text(signature: Signature) -> str:
     return f"!{written}{functor}/{arity}"
 
 
-def _meant_goal(wanted: Signature, handled: Iterable[Signature]) -> str:
-    """Return the goal with a plan that is most similar to *wanted*: of the same or of a similar name."""
+def _meant_goal(goal: nodes.Literal, handled: Iterable[Signature]) -> str:
+    """Return the goal with a plan that is most similar to *goal*: of the same or of a similar name."""
+    wanted = signature(goal)
     within = [
         each
         for each in handled
@@ -239,9 +240,21 @@ def _meant_goal(wanted: Signature, handled: Iterable[Signature]) -> str:
     same_name = [_goal_text(signature) for signature in within if signature[1] == wanted[1]]
     close = sorted(same_name) or close_matches(_goal_text(wanted), texts)
     if not close:
-        return f"write a plan for it: `+{_goal_text(wanted).rpartition('/')[0]}`"
+        return _new_plan(goal)
     name, _, arity = close[0].rpartition("/")
     return did_you_mean([name if arity == str(wanted[2]) else close[0]])
+
+
+def _new_plan(goal: nodes.Literal) -> str:
+    """Return the help for a goal without a plan: a plan that does nothing, at the end of the file."""
+    name = _goal_text(signature(goal)).rpartition("/")[0]
+    help = f"write a plan for it: `+{name}`"
+    if goal.span is None:
+        return help
+    arguments = f"({', '.join('_' for _ in goal.arguments)})" if goal.arguments else ""
+    lines = goal.span.file.lines
+    end = Span(goal.span.file, len(lines), len(lines[-1]) + 1, len(lines), len(lines[-1]) + 1)
+    return cure(help, f"\n+{name}{arguments}.\n", end)
 
 
 def _is_reachable(namespace: str | nodes.Variable | None, own: str | nodes.Variable | None) -> bool:

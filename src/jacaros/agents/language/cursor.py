@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final, NamedTuple, NoReturn
 
-from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span
+from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span, cure
 from jacaros.agents.language.lexer import RESERVED, Token
 from jacaros.agents.language.nodes import Declaration, Section
 from jacaros.agents.terms.functions import is_function
@@ -39,6 +39,7 @@ _FUSED: Final = {
 }
 """Operators of other languages, which the lexer reads as several tokens."""
 
+_SIGNS: Final = {"and": "&", "or": "|"}
 _WORDS: Final = {
     "and": "write `&` for 'and'",
     "or": "write `|` for 'or'",
@@ -91,9 +92,8 @@ def _bare_goal(tokens: Sequence[Token], index: int) -> Slip | None:
     if tokens[start].kind not in ("!", "?") or tokens[start + 1].kind != "atom":
         return None
     goal = f"{tokens[start].kind}{tokens[start + 1].text}"
-    return Slip(
-        "missing-trigger", f"`{goal}` is a goal, not the trigger of a plan", f"write `+{goal}`", tokens[start]
-    )
+    help = cure(f"write `+{goal}`", f"+{tokens[start].kind}")
+    return Slip("missing-trigger", f"`{goal}` is a goal, not the trigger of a plan", help, tokens[start])
 
 
 def _by_kind(tokens: Sequence[Token], index: int, before: Token) -> Slip | None:
@@ -107,7 +107,10 @@ def _by_kind(tokens: Sequence[Token], index: int, before: Token) -> Slip | None:
                 "foreign-word", f"strings have no prefix such as `{before.text}` in Python", help, before
             )
         case "atom" if text in _WORDS and before.kind in _ENDS_OPERAND:
-            return Slip("foreign-word", f"unknown keyword `{text}`", _WORDS[text])
+            help = _WORDS[text]
+            if text in _SIGNS:
+                help = cure(help, _SIGNS[text])
+            return Slip("foreign-word", f"unknown keyword `{text}`", help)
         case "atom" | "variable" if before.text in _PYTHON and (
             index < 2 or tokens[index - 2].kind in (".", "}")
         ):
@@ -117,9 +120,8 @@ def _by_kind(tokens: Sequence[Token], index: int, before: Token) -> Slip | None:
             help = f"close the block that was opened at line {opener.line}, column {opener.column}"
             return Slip("unclosed-bracket", f"missing `}}` before `{text}`", help)
         case kind if kind in RESERVED:
-            return Slip(
-                "reserved-word", f"reserved word `{text}` used as a name", f"quote it as an atom: '{text}'"
-            )
+            help = cure(f"quote it as an atom: '{text}'", f"'{text}'")
+            return Slip("reserved-word", f"reserved word `{text}` used as a name", help)
         case "!" if before.kind in ("&", ":-"):
             help = "a plan takes the first solution of its context; give rules conditions that exclude each other"
             return Slip("wrong-operator", "unknown operator `!` (cut)", help)
@@ -169,7 +171,7 @@ def _missing_blank(token: Token, before: Token) -> Slip | None:
     is_word = token.kind == "atom" and token.text.startswith(".")
     if not is_word or not _joined(before, token) or before.kind not in (")", "]", "atom"):
         return None
-    help = "put a blank or a line end after the final `.`"
+    help = cure("put a blank or a line end after the final `.`", f". {token.text[1:]}")
     return Slip("missing-blank", f"`{token.text}` is read as one word", help)
 
 
@@ -326,6 +328,10 @@ class Cursor:
         self.advance()
         return True
 
+    def behind(self, token: Token) -> Span:
+        """Return the empty range after a token, where an editor can insert what is missing."""
+        return Span(self.file, token.line, token.end, token.line, token.end)
+
     def span_of(self, token: Token) -> Span:
         """Return the span of one token."""
         return Span(self.file, token.line, token.column, token.line, token.end)
@@ -430,7 +436,7 @@ class Cursor:
             self.report(
                 "mismatched-bracket",
                 f"`{opener.kind}` is closed by `{token.kind}`",
-                help=f"close it with `{closer}`; it was {where}",
+                help=cure(f"close it with `{closer}`; it was {where}", closer),
                 opened=self.span_of(opener),
             )
             if not self._closes_outer(opener) or self.peek().kind == token.kind:
@@ -441,7 +447,7 @@ class Cursor:
             self.report(
                 "unclosed-bracket",
                 f"unclosed `{opener.kind}`: expected `{closer}`, found {self.found()}",
-                help=f"close it with `{closer}`; it was {where}",
+                help=cure(f"close it with `{closer}`; it was {where}", closer, self.behind(self.previous())),
                 opened=self.span_of(opener),
             )
         raise SyntaxPanic

@@ -59,6 +59,25 @@ class Span(NamedTuple):
         return Span(self.file, self.line, self.column, other.end_line, other.end_column)
 
 
+class Cure(str):
+    """A help that an editor can carry out.
+
+    Attributes:
+        text: replaces the range `where`.
+        where: None for the text that the diagnostic marks.
+    """
+
+    text: str = ""
+    where: Span | None = None
+
+
+def cure(help: str, text: str, where: Span | None = None) -> Cure:
+    """Return a help with its edit: *text* replaces *where*, or the text that the diagnostic marks."""
+    found = Cure(help)
+    found.text, found.where = text, where
+    return found
+
+
 Severity = OneOf["error", "warning", "note"]
 """Errors reject the program; warnings are nearly always mistakes; notes are worth knowing."""
 

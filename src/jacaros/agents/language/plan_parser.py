@@ -12,6 +12,7 @@ from typing import Final
 
 from jacaros.agents.language import nodes
 from jacaros.agents.language.cursor import CLOSERS, SyntaxPanic
+from jacaros.agents.language.diagnostics import cure
 from jacaros.agents.language.lexer import Token
 from jacaros.agents.language.term_parser import TermParser
 from jacaros.agents.terms.operators import BINARY
@@ -61,7 +62,9 @@ class PlanParser(TermParser):
         kind = self.token.kind
         if kind == "," and not self.token.first:
             self.fail(
-                "wrong-separator", "expected `&` between conditions, found `,`", help="write `&` for 'and'"
+                "wrong-separator",
+                "expected `&` between conditions, found `,`",
+                help=cure("write `&` for 'and'", "&"),
             )
         if kind not in _BEHIND_HEAD and not self.token.first and not self.at_plan():
             self.unexpected("`<-` or `.`")
@@ -130,7 +133,7 @@ class PlanParser(TermParser):
                 "missing-context",
                 "missing context after `:`",
                 self.span_of(colon),
-                "remove the `:`, or write `: true`",
+                cure("remove the `:`, or write `: true`", ""),
             )
             return None
         context = self._part("context")
@@ -431,7 +434,7 @@ class PlanParser(TermParser):
                     "tested-action",
                     f"internal action `{formula.name}` cannot be a test goal",
                     formula.span,
-                    "remove the `?`",
+                    cure("remove the `?`", "", self.span_of(start)),
                 )
             return nodes.Test(formula, span=self.span_from(start))
         if kind in ("+", "-", "^"):
@@ -440,16 +443,22 @@ class PlanParser(TermParser):
             self.fail(
                 "else-without-if",
                 f"`{kind}` without `if`",
-                help="remove the `;` before it",
+                help=self._without_semicolon(),
             )
         return self._formula_step(self.expression())
+
+    def _without_semicolon(self) -> str:
+        help, before = "remove the `;` before it", self.previous()
+        return cure(help, "", self.span_of(before)) if before.kind == ";" else help
 
     def _goal(self) -> nodes.Literal | nodes.Variable:
         if self.token.kind not in ("atom", "variable", "~", "::"):
             self.unexpected("a goal")
+        mark = self.span_of(self.previous())
         goal = self.operand(formula=True)
         if not isinstance(goal, nodes.Literal | nodes.Variable):
-            self.fail("wrong-goal", "an internal action cannot be a goal", goal.span, "remove the `!`")
+            help = cure("remove the `!`", "", mark)
+            self.fail("wrong-goal", "an internal action cannot be a goal", goal.span, help)
         return goal
 
     def _belief_change(self) -> nodes.BeliefChange:

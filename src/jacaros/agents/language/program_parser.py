@@ -5,7 +5,7 @@ from typing import Final, Protocol
 
 from jacaros.agents.language import nodes
 from jacaros.agents.language.cursor import CLOSERS, ProgramNames, SyntaxPanic
-from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span
+from jacaros.agents.language.diagnostics import Cure, Diagnostic, SourceFile, Span, cure
 from jacaros.agents.language.lexer import Token
 from jacaros.agents.language.nodes import UNDECLARED, parts_of
 from jacaros.agents.language.plan_parser import CONTROL, PlanParser
@@ -192,18 +192,21 @@ class ProgramParser(PlanParser):
             self.unexpected("a plan")
         section.plans.append(self._plan_clause())
 
+    def _final_dot(self, where: str) -> Cure:
+        return cure(f"put a `.` at the end of {where}", ".", self.behind(self.previous()))
+
     def _finish(self, what: str) -> None:
         """Parse the final '.' of a clause. If it is missing and the next line begins a clause, continue there."""
         token = self.token
         if self.accept(".") or (token.kind == "end" and self._last_dot_optional):
             return
         if token.kind == "end":
-            self.report("missing-dot", f"{what} without a final `.`", help="put a `.` at the end of the file")
+            self.report("missing-dot", f"{what} without a final `.`", help=self._final_dot("the file"))
         elif self._begins_clause(self.index) or (what != "plan" and token.first and token.kind in _STARTS):
             self.report(
                 "missing-dot",
                 f"{what} without a final `.` before {_naming(token)}",
-                help=f"put a `.` at the end of line {self.previous().line}",
+                help=self._final_dot(f"line {self.previous().line}"),
             )
         elif token.kind == "," and what in ("belief", "goal"):
             self.fail(
@@ -211,13 +214,15 @@ class ProgramParser(PlanParser):
             )
         elif token.kind == ",":
             self.fail(
-                "wrong-separator", "expected `&` between conditions, found `,`", help="write `&` for 'and'"
+                "wrong-separator",
+                "expected `&` between conditions, found `,`",
+                help=cure("write `&` for 'and'", "&"),
             )
         elif token.kind == ";" and what == "rule":
             self.fail(
                 "wrong-separator",
                 "expected `&` or `|` between conditions, found `;`",
-                help="write `|` for 'or'",
+                help=cure("write `|` for 'or'", "|"),
             )
         elif token.kind in CLOSERS.values():
             self.fail("unopened-bracket", f"unmatched `{token.kind}`")

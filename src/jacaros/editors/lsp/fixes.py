@@ -7,7 +7,7 @@ from typing import Final
 from lsprotocol import types
 from pygls.workspace import PositionCodec
 
-from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span
+from jacaros.agents.language.diagnostics import Cure, Diagnostic, SourceFile, Span
 from jacaros.editors.lsp.diagnostics import as_shown
 from jacaros.editors.lsp.positions import Positions
 from jacaros.runtime.files.texts import Suggestion, close_matches
@@ -27,7 +27,9 @@ def actions(
     positions = Positions.of(span.file, codec)
     edits = [*edits_of(found)]
     for where, text in edits:
-        title = f"Change to `{text}`" if text else f"Remove `{_text(where)}`"
+        written = _text(where)
+        does = "Change to" if written and text else "Add" if text else "Remove"
+        title = f"{does} `{' '.join(text.split()) or written}`"
         edit = types.TextEdit(positions.range(where), text)
         yield _action(title, uri, edit, shown, is_preferred=len(edits) == 1)
     if is_program and found.severity != "error" and found.code:
@@ -40,7 +42,11 @@ def actions(
 
 def edits_of(found: Diagnostic) -> Iterator[tuple[Span, str]]:
     """Yield the texts that the help of a diagnostic proposes, with the range that each replaces."""
-    if found.span is None or not isinstance(found.help, Suggestion):
+    if found.span is None:
+        return
+    if isinstance(found.help, Cure):
+        yield found.help.where or found.span, found.help.text
+    if not isinstance(found.help, Suggestion):
         return
     for name in found.help.names:
         where = _replaced(found.span, _ARITY.sub("", name))
