@@ -11,7 +11,6 @@ from lsprotocol import types
 from jacaros.agents.language import nodes
 from jacaros.editors.lsp.outline import Entry
 from jacaros.editors.lsp.positions import Positions, uri_of
-from jacaros.look.records.line_format import MAGIC
 from jacaros.runtime.errors import JacarosError
 from jacaros.runtime.files.texts import files_below, shown_from
 
@@ -69,6 +68,8 @@ def last_recording(folders: Iterable[Path]) -> Path | None:
 
 def _is_recording(path: Path) -> bool:
     """Return whether a file begins like a recording."""
+    from jacaros.look.records.line_format import MAGIC  # here: it imports much
+
     with path.open("rb") as file:
         packed = file.read(len(MAGIC)) == MAGIC
     with gzip.open(path) if packed else path.open("rb") as file, suppress(EOFError):

@@ -23,15 +23,14 @@ def roots_of(roots: Iterable[Path], file: Path) -> Iterator[Path]:
     yield from around or project_folders(file.parent)[-1:]
 
 
-def candidates(roots: Iterable[Path], file: Path) -> list[Path]:
-    """Return the projects and programs that the file may belong to, without the file."""
+def candidates(folders: Iterable[Path]) -> list[Path]:
+    """Return the projects and programs below these folders."""
     found: dict[Path, None] = {}
-    for root in roots_of(roots, file):
+    for folder in folders:
         try:
-            found |= dict.fromkeys(each.resolve() for each in files_below(root, (*PROJECTS, PROGRAM)))
+            found |= dict.fromkeys(each.resolve() for each in files_below(folder, (*PROJECTS, PROGRAM)))
         except OSError:  # a folder that others must not read
             continue
-    found.pop(file, None)
     return list(found)
 
 

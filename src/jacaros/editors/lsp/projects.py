@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile
-from jacaros.editors.lsp.membership import PROGRAM, candidates, members
+from jacaros.editors.lsp.membership import PROGRAM, candidates, members, roots_of
 from jacaros.editors.symbols import Index
 from jacaros.runtime.files.texts import unsaved
 from jacaros.runtime.mas.checks.files import MAPPINGS, PROJECTS, Checked, check_files
@@ -52,6 +52,7 @@ class Projects:
         self._units: dict[Path, Unit] = {}
         self._indexed: dict[Path, Unit] = {}
         self._members: dict[Path, set[Path]] = {}
+        self._candidates: dict[tuple[Path, ...], list[Path]] = {}
 
     def update(self, changed: Iterable[Path], texts: Mapping[Path, str]) -> dict[Path, list[Diagnostic]]:
         """Check everything that changed files belong to. Return the diagnostics of all files concerned.
@@ -94,6 +95,7 @@ class Projects:
     def files_changed(self) -> None:
         """Look for the projects of files again: files have been created, removed or changed outside the editor."""
         self._members.clear()
+        self._candidates.clear()
 
     def units_of(self, file: Path) -> list[Unit]:
         """Return the units that a file belongs to, as of the last check."""
@@ -108,7 +110,10 @@ class Projects:
         known = [unit.path for unit in self.units_of(file)]
         if known and file in self._members:
             return known
-        others = candidates(self.roots, file)
+        folders = tuple(roots_of(self.roots, file))
+        if folders not in self._candidates:  # walking through large folders is slow
+            self._candidates[folders] = candidates(folders)
+        others = [each for each in self._candidates[folders] if each != file]
         for suffixes in (PROJECTS, (PROGRAM,)):
             found = [each for each in others if each.suffix in suffixes and file in self._members_of(each)]
             if found:
