@@ -69,19 +69,19 @@ def _places(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_COMPLETION, types.CompletionOptions(trigger_characters=_TRIGGERS))
     def complete(ls: Server, params: types.CompletionParams) -> types.CompletionList:
         answers, at = ls.asked(params.text_document.uri, params.position)
-        found = (
-            symbols.yaml_completions(answers.file, at)
-            if answers.file.name.endswith(MAPPINGS) or answers.file.name.endswith(PROJECTS)
-            else symbols.completions(ls.index_of(params.text_document.uri), answers.file, at)
-        )
+        if answers.file.name.endswith(PROGRAM):
+            found = symbols.completions(ls.index_of(params.text_document.uri), answers.file, at)
+        else:
+            found = symbols.yaml_completions(answers.file, at)
         return types.CompletionList(False, [answers.completion(each) for each in found])
 
     @server.feature(types.TEXT_DOCUMENT_HOVER)
     def hover(ls: Server, params: types.HoverParams) -> types.Hover | None:
         answers, at = ls.asked(params.text_document.uri, params.position)
-        if answers.file.name.endswith(PROGRAM):
+        found = None
+        if not answers.file.name.endswith(MAPPINGS):
             found = symbols.hover(ls.index_of(params.text_document.uri), answers.file, at)
-        else:
+        if found is None and not answers.file.name.endswith(PROGRAM):
             found = symbols.yaml_hover(answers.file, at)
         return None if found is None else answers.hover(found)
 

@@ -1,13 +1,14 @@
 """The projects of the files that are open in an editor, and what the checker reports about them."""
 
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile
 from jacaros.editors.lsp.membership import PROGRAM, candidates, members, roots_of
 from jacaros.editors.symbols import Index
-from jacaros.runtime.files.texts import unsaved
+from jacaros.runtime.files.texts import file_text, unsaved
 from jacaros.runtime.mas.checks.files import MAPPINGS, PROJECTS, Checked, check_files
 from jacaros.runtime.mas.checks.observables import Observables
 
@@ -75,21 +76,18 @@ class Projects:
             concerned |= self._forget_unused(texts)
         return {file: self.diagnostics_of(file) for file in concerned}
 
-    def index(self) -> bool:
+    def index(self, texts: Mapping[Path, str]) -> bool:
         """Make the index of each project that has been checked since. Until then, the one before serves its programs.
 
         Return whether one has its first index.
         """
         is_first = False
-        for unit in [*self._units.values()]:
-            if unit.checked is not None and (unit.index is None or self._indexed.get(unit.path) is not unit):
-                agents = [each.name for each in unit.checked.deployment.agents]
-                index = Index(unit.checked.known_types(), dict(unit.checked.actions), agents)
-                for name, program in unit.checked.read.items():
-                    index.put(name, program)
-                is_first |= unit.index is None
-                unit.index = index
-                self._indexed[unit.path] = unit
+        with unsaved({str(path): text for path, text in texts.items()}):
+            for unit in [*self._units.values()]:
+                if unit.checked is not None and self._indexed.get(unit.path) is not unit:
+                    is_first |= unit.index is None
+                    unit.index = _index_of(unit, unit.checked)
+                    self._indexed[unit.path] = unit
         return is_first
 
     def files_changed(self) -> None:
@@ -151,6 +149,19 @@ class Projects:
             del self._units[unit.path]
             self._indexed.pop(unit.path, None)
         return {file for unit in gone for file in unit.found}
+
+
+def _index_of(unit: Unit, checked: Checked) -> Index:
+    """Return the index of a project as it was checked. What the one before knows of artifact types is read once."""
+    agents = [each.name for each in checked.deployment.agents]
+    index = (unit.index or Index()).renewed(checked.known_types(), dict(checked.actions), agents)
+    for name, program in checked.read.items():
+        index.put(name, program)
+    for path in unit.files:
+        if path.suffix in PROJECTS:
+            with suppress(OSError, UnicodeError):  # reported by the checker
+                index.put_project(SourceFile(path.as_posix(), file_text(path)))
+    return index
 
 
 def _file_of(file: SourceFile, path: Path) -> Path:

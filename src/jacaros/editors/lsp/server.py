@@ -128,7 +128,7 @@ class Server(LanguageServer):
 
     async def _index(self) -> None:
         """Read the meaning of names again, after the diagnostics: a user waits for these."""
-        is_first = await asyncio.to_thread(self.projects.index)
+        is_first = await asyncio.to_thread(self.projects.index, self.texts())
         wanted = self.client_capabilities.workspace
         if is_first and wanted is not None and wanted.inlay_hint and wanted.inlay_hint.refresh_support:
             await self.workspace_inlay_hint_refresh_async(None)

@@ -115,6 +115,6 @@ class Lamp(Artifact):
     path = write("a.asl", "!s. +!s <- lihgt(red).")
     projects = Projects([folder])
     found = projects.update([path], {path: path.read_text()})
-    projects.index()
+    projects.index({})
     assert [each.help for each in found[path]] == ["did you mean `light`?"]
     assert not (folder / "ran").exists()
