@@ -367,6 +367,8 @@ def fail_goal(
     *number* is that of the frame that it had, by which observers know it.
     """
     trigger = goal[0]
+    if agent.observers.step is not None:
+        agent.observers.step.notes_failure(agent, intention, reason)
     for each in supervisions_below(intention, len(intention.frames)):
         supervision.end(agent, each)
     if number < 0:
@@ -392,6 +394,8 @@ def fail_intention(
 
     *unplanned* is the goal that failed, if it is not on the stack.
     """
+    if unplanned is None and agent.observers.step is not None:
+        agent.observers.step.notes_failure(agent, intention, reason)
     while intention.forks and not has_handler(agent, intention, intention.forks[-1][0].depth):
         depth = intention.forks[-1][0].depth
         if not branch_failed(agent, intention):

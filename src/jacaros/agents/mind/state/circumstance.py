@@ -160,6 +160,9 @@ class StepObserver(Protocol):
     def notes_unhandled(self, agent: Any, goal: Goal, annotations: Annotations) -> None:
         """Hear of a belief change or signal for which *agent* has no plan, so that it need not become an event."""
 
+    def notes_failure(self, agent: Any, intention: Intention, reason: Any) -> None:
+        """Hear of the failure (`FailureReason`) of a goal of *intention* before it is handled."""
+
 
 class HeldEvent(NamedTuple):
     """The event before which an agent is held.

@@ -1,15 +1,12 @@
 """Breakpoints: where a debugger stops a run, before an event is handled or a step is run."""
 
 from collections.abc import Mapping
-from contextlib import suppress
 from typing import Any
 
 from jacaros.agents.language import nodes
-from jacaros.agents.language.loader import parse_formula, parse_trigger
-from jacaros.agents.language.lowering import Variables, lower, lower_value
+from jacaros.agents.language.loader import parse_trigger
+from jacaros.agents.language.lowering import Variables, lower_value
 from jacaros.agents.language.nodes import nodes_in
-from jacaros.agents.mind.actions.internal_action import STANDARD
-from jacaros.agents.mind.rules.context import reading
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import (
     EVENT_ANNOTATIONS,
@@ -22,15 +19,11 @@ from jacaros.agents.mind.state.intention import (
 )
 from jacaros.agents.mind.state.plan import Plan, StepInfo
 from jacaros.agents.mind.state.triggers import EventAnnotations, Goal, literal_of
-from jacaros.agents.terms.substitution import resolve
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.unifier import Trail, undo, unify
 from jacaros.agents.terms.values import annotations_of, functor_of
-from jacaros.look.records.words import shown
 from jacaros.runtime.errors import UsageError
-
-MOST_STEPS = 1_000
-"""Maximum number of steps of one evaluation of a condition, see `jacaros.agents.mind.rules.context.reading`."""
+from jacaros.runtime.mas.debugging.conditions import Condition, HitCount, LogMessage, bindings_of
 
 
 class Breakpoint:
@@ -68,19 +61,41 @@ class LineBreakpoint(Breakpoint):
     Args:
         file: name of the file as in diagnostics, or the end of it, such as ``patrol.asl``.
         line: number of the line, from 1.
+        condition: stop only if it holds, such as ``Level < 20``; it may use the variables of the plan. Empty for always.
+        hits: stop only at these visits, such as ``3``, ``>= 3`` or ``% 3``. Empty for all.
+        log: log this text instead of stopping, such as ``at {X}, {battery(B)}``. Empty to stop.
+
+    Raises:
+        AslError: the condition, or a formula of the text, has errors.
+        UsageError: one of them calls an internal action that acts or waits, or the hit count is invalid.
     """
 
-    def __init__(self, file: str, line: int) -> None:
+    def __init__(self, file: str, line: int, condition: str = "", hits: str = "", log: str = "") -> None:
         self.file, self.line = file, line
-        self.text = f"{file}:{line}"
+        self._given = {"condition": condition, "hits": hits, "log": log}
+        self._condition = Condition(condition) if condition else None
+        self._hits = HitCount(hits) if hits else None
+        self._log = LogMessage(log) if log else None
+        self.text = f"{file}:{line}{f' if {condition}' if condition else ''}"
 
     def data(self) -> dict[str, Any]:
-        return {"line": {"file": self.file, "line": self.line}}
+        given = {name: value for name, value in self._given.items() if value}
+        return {"line": {"file": self.file, "line": self.line, **given}}
 
     def meets_step(self, agent: Circumstance, intention: Intention) -> bool:
-        """Return whether it is the first step of its plan on the line."""
-        del agent
+        """Return whether it is the first step of its plan on the line, and the condition and the hit count are met."""
         frame: Frame = intention.frames[-1]
+        return (
+            self._is_at(frame)
+            and (self._condition is None or self._condition.answer(agent, bindings_of(frame)) is not None)
+            and (self._hits is None or self._hits.counts())
+        )
+
+    def logs(self, agent: Circumstance, intention: Intention) -> str | None:
+        """Return what to log instead of stopping the run; None to stop it."""
+        return None if self._log is None else self._log.text(agent, bindings_of(intention.frames[-1]))
+
+    def _is_at(self, frame: Frame) -> bool:
         plan: Plan = frame[PLAN]
         return self.is_in(plan.file) and (
             first_line(frame) == self.line or (is_at_first_step(frame) and self.line in head_lines(plan))
@@ -180,11 +195,7 @@ class ConditionBreakpoint(Breakpoint):
     """
 
     def __init__(self, condition: str, agent: str) -> None:
-        self._formula = parse_formula(condition)
-        for call in nodes_in(nodes.InternalAction, self._formula):
-            action = STANDARD.get(call.name)
-            if action is not None and not action.pure:
-                raise UsageError(f"condition `{condition}` calls `{call.name}`, which may have effects")
+        self._condition = Condition(condition)
         self.condition, self.agent = condition, agent
         self.text = f"{condition} of {agent}"
         self._held: bool | None = None
@@ -201,24 +212,44 @@ class ConditionBreakpoint(Breakpoint):
         """Return whether the condition holds, and did not at the last evaluation. At the first one, return False."""
         if agent.name != self.agent:
             return False
-        before, self._held = self._held, self._holds(agent)
+        found = self._condition.answer(agent)
+        before, self._held = self._held, found is not None
+        if found is not None:
+            self._values = ", ".join(f"{name}={value}" for name, value in found.items())
         return self._held and before is False
-
-    def _holds(self, agent: Circumstance) -> bool:
-        """Return whether the formula holds now; False if it cannot be evaluated, or the search takes too long."""
-        names = Variables()
-        with suppress(Exception), reading(agent, MOST_STEPS) as view:
-            for _ in view.answers(lower(self._formula, names.__getitem__)):
-                values = ((name, resolve(each)) for name, each in names.items() if name[0] != "_")
-                self._values = ", ".join(f"{name}={shown(value)}" for name, value in values)
-                return True
-        return False
 
     def meets_event(self, agent: Circumstance, event: Event) -> bool:
         return self.becomes_true(agent)
 
     def meets_step(self, agent: Circumstance, intention: Intention) -> bool:
         return self.becomes_true(agent)
+
+
+FAILURES: Mapping[str, str] = {
+    "goal": "goal fails",
+    "plan": "plan not found",
+    "operation": "operation fails",
+}
+"""Kinds of failures, the most general one first, and how breakpoints for them are shown."""
+
+
+class FailureBreakpoint(Breakpoint):
+    """Stops after the step in which a goal failed, whether or not a plan handles the failure.
+
+    Args:
+        kind: one of `FAILURES`.
+
+    Raises:
+        UsageError: the kind is unknown.
+    """
+
+    def __init__(self, kind: str) -> None:
+        if kind not in FAILURES:
+            raise UsageError(f"unknown failure `{kind}`; expected {', '.join(FAILURES)}")
+        self.kind, self.text = kind, FAILURES[kind]
+
+    def data(self) -> dict[str, Any]:
+        return {"failure": self.kind}
 
 
 def is_at_first_step(frame: Frame) -> bool:
@@ -270,8 +301,8 @@ def breakpoint_at(at: Mapping[str, Any]) -> Breakpoint:
 
     Args:
         at: ``{"line": {"file": F, "line": N}}``, ``{"plan": {"plan": LABEL, "agent": A}}``,
-            ``{"event": TRIGGER, "agent": A}`` or ``{"condition": CONDITION, "agent": A}``. The agent of plans and events is
-            optional.
+            ``{"event": TRIGGER, "agent": A}``, ``{"condition": CONDITION, "agent": A}`` or ``{"failure": KIND}``. The agent
+            of plans and events is optional, as are ``condition``, ``hits`` and ``log`` of a line (`LineBreakpoint`).
 
     Raises:
         AslError: a trigger or condition has errors.
@@ -279,16 +310,19 @@ def breakpoint_at(at: Mapping[str, Any]) -> Breakpoint:
     """
     try:
         match at:
-            case {"line": {"file": file, "line": line}}:
-                return LineBreakpoint(str(file), int(line))
+            case {"line": {"file": file, "line": line} as given}:
+                qualified = (str(given.get(each) or "") for each in ("condition", "hits", "log"))
+                return LineBreakpoint(str(file), int(line), *qualified)
             case {"plan": {"plan": label} as plan}:
                 return PlanBreakpoint(str(label), plan.get("agent"))
             case {"event": pattern}:
                 return EventBreakpoint(str(pattern), at.get("agent"))
             case {"condition": condition, "agent": str(agent)}:
                 return ConditionBreakpoint(str(condition), agent)
+            case {"failure": kind}:
+                return FailureBreakpoint(str(kind))
             case {"condition": _}:
                 raise UsageError("expected the name of an agent for a condition")
     except (TypeError, ValueError) as wrong:
         raise UsageError(f"invalid breakpoint: {dict(at)!r}") from wrong
-    raise UsageError(f"invalid breakpoint: {dict(at)!r}; expected line, plan, event or condition")
+    raise UsageError(f"invalid breakpoint: {dict(at)!r}; expected line, plan, event, condition or failure")

@@ -1,12 +1,14 @@
 """The debugger of a running system. It stops agents, timers and the embedded world together."""
 
 import asyncio
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Literal, get_args
 
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules.cycle import observe_steps
+from jacaros.agents.mind.rules.failure_reason import FailureReason
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import EVENT_GOAL, PLAN, STEP, Event, Intention
 from jacaros.agents.mind.state.triggers import Goal
@@ -21,11 +23,13 @@ from jacaros.runtime.mas.debugging.breakpoints import (
     Breakpoint,
     ConditionBreakpoint,
     EventBreakpoint,
+    FailureBreakpoint,
     LineBreakpoint,
     breakpoint_at,
     lines_that_stop,
     step_line,
 )
+from jacaros.runtime.mas.debugging.failures import Failed, failed
 from jacaros.runtime.mas.debugging.reload import reload_programs
 from jacaros.runtime.mas.directory import Directory
 from jacaros.runtime.mas.history.run_environment import ObservedSystem
@@ -33,10 +37,31 @@ from jacaros.runtime.mas.options import RunOptions
 from jacaros.runtime.mas.ros_graph import RosGraph
 from jacaros.runtime.mas.scheduler import Runnable
 
-StepKind = Literal["cycle", "step", "event"]
-"""The unit of stepping: a reasoning cycle, a plan step, or until the next event is handled."""
+StepKind = Literal["cycle", "step", "event", "over", "out"]
+"""Until where to continue: the next reasoning cycle, plan step or event; or, of one intention, the next step outside
+subgoals (``over``), or the step after the end of its current plan (``out``).
+"""
 
 STEPS = get_args(StepKind)
+
+
+@dataclass(frozen=True)
+class _Stepping:
+    """A requested step.
+
+    Attributes:
+        what: the kind.
+        agent: the agent to step; None for the one that is next.
+        intention: the intention to step; None for any.
+        height: the greatest height of its stack at which the step ends.
+        begun: by agent, the number of the cycle in which the step began.
+    """
+
+    what: StepKind
+    agent: str | None
+    intention: Intention | None
+    height: int
+    begun: Mapping[str, int]
 
 
 @dataclass(frozen=True)
@@ -89,11 +114,10 @@ class Debugger:
         self._breakpoints: dict[str, Breakpoint] = {}
         self._listeners: list[DebugListener] = []
         self._state = DebugState("running", speed=self.speed)
-        self._stepping: tuple[StepKind, str | None] | None = None
-        self._stepped_from: dict[str, int] = {}
-        """By agent, the number of the cycle in which a step began."""
+        self._stepping: _Stepping | None = None
         self._noted: dict[str, dict[str, None]] = {}
         """By agent, the breakpoints met by belief changes and signals that no plan handles, since its last step."""
+        self._failure: Failed | None = None
         self._watches = False
         self._over = False
 
@@ -108,6 +132,11 @@ class Debugger:
     def state(self) -> DebugState:
         """The current state, as listeners received it."""
         return self._state
+
+    @property
+    def failure(self) -> Failed | None:
+        """The failure at which the run is paused, or None."""
+        return self._failure if self.paused else None
 
     def listen(self, listener: DebugListener) -> Callable[[], None]:
         """Call *listener* with every new state. Return a function that ends this."""
@@ -144,32 +173,48 @@ class Debugger:
         """Continue where the run was paused. No effect on a running one."""
         if not self.paused:
             return
+        self._failure = None
         self._change(DebugState("running"))
         self._system.scheduler.resume()
         self._system.clock.resume()
 
-    def step(self, what: StepKind = "step", agent: str | None = None) -> None:
+    def step(
+        self, what: StepKind = "step", agent: str | None = None, intention: Intention | None = None
+    ) -> None:
         """Continue until the next reasoning cycle, plan step or event, and pause before it.
 
         Meanwhile time advances, and other agents have their turns.
 
         Args:
-            what: ``cycle``, ``step`` or ``event``.
+            what: ``cycle``, ``step``, ``event``, ``over`` or ``out``. The last goal of a plan replaces the plan on the
+                stack, so ``over`` enters it.
             agent: name of the agent to step. None for the one that is next.
+            intention: the intention to step with ``step``, ``over`` and ``out``. None for any with ``step``, and otherwise
+                for the one that is held. If it ends, the run pauses before the next step of its agent.
 
         Raises:
-            UsageError: *what* or *agent* is unknown.
+            UsageError: *what* or *agent* is unknown, or no intention is held.
         """
         if what not in STEPS:
             raise UsageError(f"unknown step `{what}`; expected {', '.join(STEPS)}")
-        if agent is not None and self._system.directory.find(agent) is None:
+        host = None if agent is None else self._system.directory.find(agent)
+        if agent is not None and host is None:
             raise UsageError(f"unknown agent `{agent}`")
+        height = sys.maxsize
+        if what in ("over", "out"):
+            intention = intention or self._held_intention(agent)
+            height = len(intention.frames) - (what == "out")
         self._hook()
-        self._stepping = (what, agent)
-        self._stepped_from = {
-            mind.name: mind.counts.cycles for mind in self._minds() if mind.held is not None
-        }
+        begun = {mind.name: mind.counts.cycles for mind in self._minds() if mind.held is not None}
+        self._stepping = _Stepping(what, agent, intention, height, begun)
         self.resume()
+
+    def _held_intention(self, agent: str | None) -> Intention:
+        held = [mind.held for mind in self._minds() if agent in (None, mind.name)]
+        found = next((each for each in held if isinstance(each, Intention)), None)
+        if found is None:
+            raise UsageError("no intention is held before a step; use `step`, `event` or `cycle`")
+        return found
 
     def run_ended(self) -> None:
         """Let the run end, because what a pause holds would never end. From now on, nothing pauses it."""
@@ -230,10 +275,15 @@ class Debugger:
         self._change(self._state)
         return known
 
+    def lines_of(self, file: str) -> set[int]:
+        """Return the lines of a file where a breakpoint can stop the run; empty if no agent runs it yet."""
+        at = LineBreakpoint(file, 0)
+        plans = (plan for mind in self._minds() for plan in mind.library.plans if at.is_in(plan.file))
+        return {line for plan in plans for line in lines_that_stop(plan)}
+
     def _refuse_useless(self, made: LineBreakpoint) -> None:
         """Reject a line without a step. A file that no agent runs may be used later."""
-        plans = [plan for mind in self._minds() for plan in mind.library.plans if made.is_in(plan.file)]
-        lines = {line for plan in plans for line in lines_that_stop(plan)}
+        lines = self.lines_of(made.file)
         if lines and made.line not in lines:
             after = min((line for line in lines if line > made.line), default=None)
             text = f"no step on line {made.line} of {made.file}"
@@ -288,10 +338,18 @@ class Debugger:
         if not (self._breakpoints or self._stepping):
             observe_steps(agent, None)  # from now on, the agent is as fast as without a debugger
             return False
-        why = self._met(agent, lambda each: each.meets_step(agent, intention))
+        why = self._met(agent, lambda each: self._meets_step(each, agent, intention))
         if not why and intention.frames[-1][STEP] is not None:
-            why = self._why_before(agent, "step")
+            why = self._why_before(agent, "step", intention)
         return self._hold(agent, why, intention)
+
+    def _meets_step(self, each: Breakpoint, agent: Circumstance, intention: Intention) -> bool:
+        if not each.meets_step(agent, intention):
+            return False
+        message = each.logs(agent, intention) if isinstance(each, LineBreakpoint) else None
+        if message is not None:
+            self._system.console.log(f"[{agent.name}] {message}")
+        return message is None
 
     def notes_unhandled(self, agent: Circumstance, goal: Goal, annotations: Annotations) -> None:
         """Hold *agent* before its next event or step if a breakpoint is for a change that no plan handles."""
@@ -299,20 +357,36 @@ class Debugger:
             if isinstance(each, EventBreakpoint) and each.fits(agent, goal, annotations):
                 self._noted.setdefault(agent.name, {})[each.text] = None
 
+    def notes_failure(self, agent: Circumstance, intention: Intention, reason: FailureReason) -> None:
+        """Stop after the step of *agent* in which a goal failed, if a breakpoint is for this kind of failure."""
+        wanted = [each for each in self._breakpoints.values() if isinstance(each, FailureBreakpoint)]
+        if not wanted or self._over:
+            return
+        found = failed(agent.name, intention, reason)
+        for each in wanted:
+            if each.kind in found.kinds:
+                self._failure = found
+                told = f"{each.text}: {found.message.splitlines()[0]}"
+                self._noted.setdefault(agent.name, {})[told] = None
+
     def _met(self, agent: Circumstance, test: Callable[[Breakpoint], bool]) -> str:
         # Evaluate all: conditions remember at each evaluation whether they hold.
         met = list(self._noted.pop(agent.name, ()))
         met += [each.met for each in self._breakpoints.values() if test(each)]
         return f"breakpoint {', '.join(met)}" if met else ""
 
-    def _why_before(self, agent: Circumstance, what: StepKind) -> str:
+    def _why_before(self, agent: Circumstance, what: StepKind, intention: Intention | None = None) -> str:
         """Return ``step`` if the requested step ends here."""
-        if self._stepping is None or self._stepping[1] not in (None, agent.name):
+        wanted = self._stepping
+        if wanted is None or wanted.agent not in (None, agent.name):
             return ""
-        wanted = self._stepping[0]
-        if wanted == "cycle":
-            return "" if self._stepped_from.get(agent.name) == agent.counts.cycles else "step"
-        return "step" if wanted == what else ""
+        if wanted.what == "cycle":
+            return "" if wanted.begun.get(agent.name) == agent.counts.cycles else "step"
+        if wanted.intention is None:
+            return "step" if wanted.what == what else ""
+        if wanted.intention.dropped:
+            return "step" if what == "step" else ""
+        return "step" if wanted.intention is intention and len(intention.frames) <= wanted.height else ""
 
     def _hold(
         self, agent: Circumstance, why: str, intention: Intention | None, event: Goal | None = None

@@ -150,9 +150,7 @@ class IntentionRecords:
 
     def _levels(self, frames: Sequence[Frame], known: Sequence[_Level]) -> list[_Level]:
         """Return the goals of a stack from the bottom up, with their current steps."""
-        frames = [frame for frame in frames if frame[GOAL][0].functor.namespace != "jacaros"]
-        # A goal from outside that has not had its turn has no frame of a plan yet.
-        levels = list(zip(frames, [*frames[1:], None], strict=False))
+        levels = levels_of(frames)
         if len(levels) > DEEPEST:
             levels = [levels[0], *levels[1 - DEEPEST :]]
         return [
@@ -162,10 +160,11 @@ class IntentionRecords:
 
     def _level(self, frame: Frame, above: Frame | None) -> _Level:
         plan: Plan = frame[PLAN]
+        span = place_in_stack(frame, above)
         if above is None:
-            span, step, lasting = _span(frame), step_of(frame), False
+            step, lasting = step_of(frame), False
         else:
-            span, step = place_of_call(frame, above[GOAL][0].functor), shown_goal(above)
+            step = shown_goal(above)
             lasting = all(is_ground(literal_of(each[GOAL], ())) for each in (frame, above))
         file, line = (plan.file, 0) if span is None else (span.file.name, span.line)
         data = records.StackedGoal(shown_goal(frame), self._numbers[plan], file, line, step)
@@ -192,6 +191,18 @@ class IntentionRecords:
         if not isinstance(selections, Urgent):
             return 0
         return max(selections.of_plan(frame[PLAN]) for frame in intention.frames)
+
+
+def levels_of(frames: Sequence[Frame]) -> list[tuple[Frame, Frame | None]]:
+    """Return the visible frames of a stack from the bottom up, each with the one above it."""
+    frames = [frame for frame in frames if frame[GOAL][0].functor.namespace != "jacaros"]
+    # A goal from outside that has not had its turn has no frame of a plan yet.
+    return list(zip(frames, [*frames[1:], None], strict=False))
+
+
+def place_in_stack(frame: Frame, above: Frame | None) -> Span | None:
+    """Return where the plan of a frame is: at its next step, or where it called the goal of the frame above it."""
+    return _span(frame) if above is None else place_of_call(frame, above[GOAL][0].functor)
 
 
 def shown_goal(frame: Frame) -> str:

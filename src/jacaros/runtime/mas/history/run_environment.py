@@ -14,6 +14,7 @@ from jacaros.robots.ros.backend import Backend, GraphContents
 from jacaros.robots.ros.errors import RosError
 from jacaros.runtime.clock import Clock, Timer
 from jacaros.runtime.mas.agents.lifecycle import AgentLifecycle
+from jacaros.runtime.mas.console import RunConsole
 from jacaros.runtime.mas.deployment import Deployment
 from jacaros.runtime.mas.directory import Directory, Mailboxes
 from jacaros.runtime.mas.fleet import Fleet
@@ -47,6 +48,7 @@ class ObservedSystem(Protocol):
     deployment: Deployment
     options: RunOptions
     fleet: Fleet | None
+    console: RunConsole
 
     def trace(self, tracer: Tracer | None) -> None:
         """Let *tracer* create the causes. None ends this."""
