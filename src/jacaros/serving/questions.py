@@ -13,6 +13,7 @@ from jacaros.agents.mind.state.budget import SearchLimit
 from jacaros.agents.mind.state.plan import Failure
 from jacaros.agents.terms.substitution import resolve
 from jacaros.agents.terms.text import excerpt, text
+from jacaros.agents.terms.unifier import unify
 from jacaros.agents.terms.values import Term, Var
 from jacaros.runtime.mas.embedding.running_agent import question
 from jacaros.runtime.time_limit import within
@@ -20,6 +21,7 @@ from jacaros.serving.arguments import Data, data_of, literal_of
 from jacaros.serving.callers import LONGEST, RequestError, check_text
 
 T = TypeVar("T")
+NO_VALUES: Mapping[str, Term] = {}
 SHOWN, MOST = 20, 1_000
 """Maximum number of answers as text, and as data."""
 STEPS, SECONDS = 10_000, 0.1
@@ -52,8 +54,13 @@ def answers_of(
     return _asked(mind, answer)
 
 
-def ask(mind: Mind, formula: str) -> str:
+def ask(mind: Mind, formula: str, values: Mapping[str, Term] = NO_VALUES) -> str:
     """Return the answers of a formula, one per line: ``X = 3, Y = kitchen``; ``yes`` or ``no`` without variables.
+
+    Args:
+        mind: the agent.
+        formula: the formula.
+        values: variables that have a value.
 
     Raises:
         RequestError: it cannot be answered.
@@ -62,9 +69,11 @@ def ask(mind: Mind, formula: str) -> str:
         term, names = question(check_text(formula))
     except AslError as error:
         raise RequestError("invalid_arguments", first_line(error)) from None
-    shown = {name: value for name, value in names.items() if name[0] != "_"}
+    shown = {name: value for name, value in names.items() if name[0] != "_" and name not in values}
 
     def answer(view: ReadOnly) -> str:
+        for name in names.keys() & values.keys():
+            unify(names[name], values[name], view.trail)
         lines = [_values(shown) or "yes" for _ in islice(view.answers(term), SHOWN + 1)]
         if not shown:
             lines = lines[:1]

@@ -33,6 +33,7 @@ COMMANDS = {
     "new": ("jacaros.runtime.cli.new", "Make a project that runs, from a template."),
     "run": ("jacaros.runtime.cli.run", "Run an agent program or a project."),
     "mcp": ("jacaros.runtime.cli.mcp", "Run an agent program, and serve it to a language model."),
+    "dap": ("jacaros.runtime.cli.dap", "Debug agents from an editor (Debug Adapter Protocol)."),
     "console": ("jacaros.runtime.cli.talking:console", "Talk to the agents of a running system."),
     "achieve": ("jacaros.runtime.cli.talking:achieve", "Give a goal to an agent of a running system."),
     "ask": ("jacaros.runtime.cli.talking:ask", "Ask an agent of a running system."),

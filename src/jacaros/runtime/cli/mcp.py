@@ -10,6 +10,7 @@ from jacaros.runtime.cli import run
 from jacaros.runtime.cli.options import option, variables
 from jacaros.runtime.cli.usage import examples, usage_error
 from jacaros.runtime.mas.system import System
+from jacaros.serving.stdio import claim
 
 
 def check_installed() -> None:
@@ -50,7 +51,7 @@ def command(roles: Iterable[str], patience: float | None, options: tuple[str, ..
     """  # fmt: skip
     check_installed()
     context = run.command.make_context("jacaros mcp", list(options), obj=variables())
-    from jacaros.serving.mcp.stdio import StdioDoor, claim  # here: it imports much
+    from jacaros.serving.mcp.stdio import StdioDoor  # here: it imports much
 
     def open_door(mas: System) -> None:
         StdioDoor(mas, wire, frozenset(roles or (USER,)), patience)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 import click
 
@@ -157,6 +157,7 @@ def command(
     node: str | None,
     all_nodes: bool,
     open_door: Callable[[System], None] | None = None,
+    streams: tuple[TextIO, TextIO] | None = None,
     **given: Any,
 ) -> int:
     """Run FILE: an agent program (.asl, or .py for an agent in Python) or a project (.mas2j, .jcm).
@@ -204,9 +205,9 @@ def command(
         options.check()
         return _run_nodes(project, outputs, options.fleet_keys)
     own = service.own_console()
-    stream = None if own is None else own.stream
+    stream, errors = streams or 2 * (None if own is None else own.stream,)
     patience = FAST_PATIENCE if options.fast else PATIENCE
-    console = StandardConsole("warning" if quiet else "info", stream, stream, patience)
+    console = StandardConsole("warning" if quiet else "info", stream, errors, patience)
     for each in notes:
         console.log(each)
     code = 1

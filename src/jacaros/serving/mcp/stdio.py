@@ -4,12 +4,10 @@ import asyncio
 import json
 import os
 import re
-import sys
 import threading
 from collections.abc import AsyncIterator, Awaitable, Callable
 from concurrent.futures import Future
 from contextlib import suppress
-from dataclasses import dataclass
 from queue import SimpleQueue
 from typing import Any, BinaryIO, cast
 
@@ -22,6 +20,7 @@ from jacaros.serving.crossing import Crossing, DoorThread, Outbox
 from jacaros.serving.mcp.clients import Client
 from jacaros.serving.mcp.server import Context, McpServer
 from jacaros.serving.service import service_of
+from jacaros.serving.stdio import Wire
 
 LONGEST_LINE = 1 << 20
 """Maximum length of a message, in bytes."""
@@ -39,25 +38,6 @@ _MALFORMED = json.dumps(
         },
     }
 )
-
-
-@dataclass(frozen=True)
-class Wire:
-    """Descriptors of the client's messages and ours."""
-
-    source: int
-    sink: int
-
-
-def claim() -> Wire:
-    """Take over the standard input and output: from now on, output of the run goes to the standard error output."""
-    wire = Wire(os.dup(0), os.dup(1))
-    nothing = os.open(os.devnull, os.O_RDONLY)
-    os.dup2(nothing, 0)
-    os.close(nothing)
-    sys.stdout.flush()
-    os.dup2(2, 1)
-    return wire
 
 
 class Lines:
@@ -154,7 +134,7 @@ class StdioDoor:
 
     Args:
         system: the run; already started.
-        wire: what `claim` returned.
+        wire: what `jacaros.serving.stdio.claim` returned.
         roles: roles of the client.
         patience: see `McpServer`.
     """

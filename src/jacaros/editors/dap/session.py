@@ -1,0 +1,315 @@
+"""A debugging session: the requests of an editor about a run, and the events for it."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from itertools import count
+from typing import Any
+
+from jacaros.agents.language.offers import OPERATOR
+from jacaros.agents.mind.mind import Mind
+from jacaros.editors.dap.points import FILTERS, Points, first_line
+from jacaros.editors.dap.scopes import Scopes
+from jacaros.editors.dap.threads import Threads
+from jacaros.editors.dap.variables import Variables
+from jacaros.runtime.clock import of_run
+from jacaros.runtime.errors import JacarosError, UsageError
+from jacaros.runtime.mas.agents.host import AgentHost
+from jacaros.runtime.mas.debugging.conditions import bindings_of
+from jacaros.runtime.mas.debugging.debugger import DebugState, StepKind
+from jacaros.runtime.mas.system import System
+from jacaros.serving.callers import Caller
+from jacaros.serving.questions import ask
+from jacaros.serving.service import service_of
+
+Arguments = Mapping[str, Any]
+Body = Mapping[str, Any] | None
+Send = Callable[[Mapping[str, Any]], None]
+CAPABILITIES: Mapping[str, Any] = {
+    "supportsConfigurationDoneRequest": True,
+    "supportsConditionalBreakpoints": True,
+    "supportsHitConditionalBreakpoints": True,
+    "supportsLogPoints": True,
+    "supportsFunctionBreakpoints": True,
+    "exceptionBreakpointFilters": FILTERS,
+    "supportsExceptionInfoRequest": True,
+    "supportsEvaluateForHovers": True,
+    "supportsSteppingGranularity": True,
+    "supportsTerminateRequest": True,
+    "supportTerminateDebuggee": True,
+}
+
+
+class Channel:
+    """Numbers the messages to an editor.
+
+    Args:
+        send: sends a message; any thread may call it.
+    """
+
+    def __init__(self, send: Send) -> None:
+        self._send, self._numbers = send, count(1)
+
+    def event(self, name: str, **body: Any) -> None:
+        """Send an event."""
+        self._send({"seq": next(self._numbers), "type": "event", "event": name, "body": body})
+
+    def output(self, text: str, category: str) -> None:
+        """Show a text in the editor's console; the *category* is ``stdout``, ``stderr`` or ``console``."""
+        self.event("output", category=category, output=text)
+
+    def respond(self, request: Arguments, body: Body = None) -> None:
+        """Answer a request."""
+        self._respond(request, True, {} if body is None else {"body": body})
+
+    def refuse(self, request: Arguments, message: str) -> None:
+        """Answer a request that failed."""
+        error = {"id": 1, "format": message.replace("{", "(").replace("}", ")"), "showUser": True}
+        self._respond(request, False, {"message": message, "body": {"error": error}})
+
+    def _respond(self, request: Arguments, success: bool, more: Arguments) -> None:
+        about = {"request_seq": request.get("seq", 0), "command": request.get("command", "")}
+        self._send({"seq": next(self._numbers), "type": "response", "success": success, **about, **more})
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What the editor wants of a session.
+
+    Attributes:
+        debug: stop at breakpoints; False only shows the output.
+        stop_on_entry: stop before the first step.
+        changes: let `evaluate` change the agents' beliefs and goals.
+        launched: the run belongs to the session, and ends with it.
+    """
+
+    debug: bool = True
+    stop_on_entry: bool = False
+    changes: bool = False
+    launched: bool = True
+
+    @classmethod
+    def of(cls, given: Arguments, launched: bool) -> "Settings":
+        """Return the settings in the arguments of `launch` or `attach`."""
+        wants = {name: given.get(name) is True for name in ("noDebug", "stopOnEntry", "allowChanges")}
+        return cls(not wants["noDebug"], wants["stopOnEntry"], wants["allowChanges"], launched)
+
+
+class Session:
+    """Debugs a run for an editor. All methods belong to the loop of the run.
+
+    Args:
+        system: the run; already started.
+        channel: sends messages to the editor.
+        settings: what the editor wants.
+    """
+
+    def __init__(self, system: System, channel: Channel, settings: Settings) -> None:
+        self._system, self._channel, self._settings = system, channel, settings
+        self._debugger = system.debugger
+        self._variables, self._threads = Variables(), Threads(system)
+        self._scopes = Scopes(system, self._variables)
+        self._points = Points(
+            system, lambda each: channel.event("breakpoint", reason="changed", breakpoint=each)
+        )
+        self._paused = self._own_request = False
+        self._cannot: tuple[str, ...] = ()
+        self._service = service_of(system).open(Caller("editor", "dap", frozenset({OPERATOR})))
+        self._ends = [self._debugger.listen(self._debugger_changed), self._points.end]
+        system.when_ended(self._run_ended)
+        self._requests: dict[str, Callable[[Arguments], Body]] = {
+            "setBreakpoints": self._set_breakpoints,
+            "setFunctionBreakpoints": self._set_function_breakpoints,
+            "setExceptionBreakpoints": self._set_exception_breakpoints,
+            "configurationDone": self._configuration_done,
+            "threads": lambda _: {"threads": self._threads.all()},
+            "stackTrace": self._stack_trace,
+            "scopes": lambda given: {
+                "scopes": self._scopes.of(self._threads.level(_number(given, "frameId")))
+            },
+            "variables": self._parts,
+            "evaluate": self._evaluate,
+            "exceptionInfo": self._exception_info,
+            "continue": self._continue,
+            "pause": lambda _: self._debugger.pause(),
+            "next": lambda given: self._step("over", given),
+            "stepIn": lambda given: self._step("step", given),
+            "stepOut": lambda given: self._step("out", given),
+            "jacaros/cycle": lambda given: self._step("cycle", given),
+            "jacaros/reload": lambda _: {"lines": self._debugger.reload()},
+        }
+
+    # ---- the protocol
+
+    def take(self, request: Arguments) -> None:
+        """Execute a request of the editor, and answer it."""
+        command = str(request.get("command"))
+        given = request.get("arguments") or {}
+        if command in ("terminate", "disconnect"):
+            self._channel.respond(request)
+            self.leave(command == "terminate" or given.get("terminateDebuggee", self._settings.launched))
+            return
+        if command not in self._requests:
+            self._channel.refuse(request, f"unknown request: {command[:80]}")
+            return
+        self._own_request = True
+        try:
+            with of_run():  # what a request starts pauses with the run
+                body = self._requests[command](given)
+        except JacarosError as error:
+            self._channel.refuse(request, first_line(error))
+        except (AttributeError, KeyError, TypeError, ValueError) as error:
+            self._channel.refuse(request, f"invalid arguments of {command}: {type(error).__name__}: {error}")
+        else:
+            self._channel.respond(request, body)
+            if command == "configurationDone" and not self._settings.stop_on_entry:
+                self._debugger.resume()
+        finally:
+            self._own_request = False
+
+    def begin(self) -> None:
+        """Take the breakpoints before the run begins, or continues: it is paused until the editor has sent them."""
+        if self._settings.debug:
+            self._system.keep_history()
+            self._debugger.pause("entry" if self._settings.launched else "attach")
+        self._channel.event("initialized")
+
+    def leave(self, end_run: bool) -> None:
+        """End the session; and the run, which stops its robots, or let it continue without breakpoints."""
+        if end_run:
+            self._system.stop_system(0.0, 0)
+            return
+        self._close()
+        self._points.clear()
+        self._debugger.resume()
+
+    def _close(self) -> None:
+        for end in self._ends:
+            end()
+        self._service.close()
+
+    def _run_ended(self, code: int) -> None:
+        self._close()
+        self._channel.event("exited", exitCode=code)
+        self._channel.event("terminated")
+
+    def _debugger_changed(self, state: DebugState) -> None:
+        paused = state.state == "paused"
+        if paused == self._paused:
+            return
+        self._paused = paused
+        self._variables.forget()
+        self._threads.forget()
+        if not paused:
+            if not self._own_request:  # such as on the live page
+                self._channel.event("continued", threadId=self._threads.id(""), allThreadsContinued=True)
+        elif state.why != "entry" or self._settings.stop_on_entry:
+            self._stopped(state)
+
+    def _stopped(self, state: DebugState) -> None:
+        if state.cannot and state.cannot != self._cannot:
+            self._cannot = state.cannot
+            stopped = "robots were stopped; " if self._system.options.real_graph else ""
+            self._channel.output(
+                "".join(f"{stopped}not paused: {each}\n" for each in state.cannot), "important"
+            )
+        failure, why = self._debugger.failure, state.why
+        reason = "exception" if failure is not None else why if " " not in why else "breakpoint"
+        self._channel.event(
+            "stopped",
+            reason=reason,
+            description=f"Paused: {why}",
+            threadId=self._threads.stopped(),
+            allThreadsStopped=True,
+            **({"text": failure.message.splitlines()[0]} if failure is not None else {}),
+        )
+
+    # ---- breakpoints
+
+    def _set_breakpoints(self, given: Arguments) -> Body:
+        wanted = given.get("breakpoints") or [] if self._settings.debug else []
+        return {"breakpoints": self._points.set_lines(str(given["source"]["path"]), wanted)}
+
+    def _set_function_breakpoints(self, given: Arguments) -> Body:
+        names = [str(each["name"]) for each in given["breakpoints"]] if self._settings.debug else []
+        return {"breakpoints": self._points.set_functions(names)}
+
+    def _set_exception_breakpoints(self, given: Arguments) -> Body:
+        options = [each["filterId"] for each in given.get("filterOptions") or ()]
+        kinds = [*given.get("filters", ()), *options] if self._settings.debug else []
+        return {"breakpoints": self._points.set_failures(map(str, kinds))}
+
+    def _configuration_done(self, _: Arguments) -> Body:
+        return None
+
+    # ---- control
+
+    def _continue(self, _: Arguments) -> Body:
+        self._debugger.resume()
+        return {"allThreadsContinued": True}
+
+    def _step(self, what: StepKind, given: Arguments) -> Body:
+        host, intention = self._threads.of(_number(given, "threadId"))
+        if given.get("granularity") == "instruction":
+            what = "cycle"
+        elif intention is None and what != "cycle":
+            what = "step"
+        self._debugger.step(what, host.name, None if what == "cycle" else intention)
+        return None
+
+    # ---- the state
+
+    def _stack_trace(self, given: Arguments) -> Body:
+        frames = self._threads.stack(_number(given, "threadId"))
+        first = int(given.get("startFrame") or 0)
+        levels = int(given.get("levels") or 0) or len(frames)
+        return {"stackFrames": frames[first : first + levels], "totalFrames": len(frames)}
+
+    def _parts(self, given: Arguments) -> Body:
+        found = self._variables.parts(_number(given, "variablesReference"))
+        first = int(given.get("start") or 0)
+        return {"variables": found[first : first + (int(given.get("count") or 0) or len(found))]}
+
+    def _evaluate(self, given: Arguments) -> Body:
+        """Answer a question to the agent of a stack frame, or show a binding of it."""
+        written, frame_id = str(given["expression"]).strip(), given.get("frameId")
+        level = None if frame_id is None else self._threads.level(int(frame_id))
+        host = self._agent() if level is None else level.host
+        bindings = {} if level is None or level.frame is None else bindings_of(level.frame)
+        if (alone := written.removeprefix("?")) in bindings:
+            written = alone
+            shown = self._variables.term(written, bindings[written])
+            return {"result": shown.pop("value"), **shown}
+        if written.startswith(("!", "+", "-")) and given.get("context") == "repl":
+            if not self._settings.changes:
+                raise UsageError("this session is read-only; set `allowChanges` to change beliefs and goals")
+            answer = self._service.console(host.name, written)
+        elif isinstance(host.mind, Mind):
+            answer = ask(host.mind, written.removeprefix("?").removesuffix("."), bindings)
+        else:
+            raise UsageError(f"agent `{host.name}` is written in Python: it has no beliefs to ask for")
+        return {"result": answer, "variablesReference": 0}
+
+    def _agent(self) -> AgentHost:
+        """Return the agent that the run stopped for, or the first one."""
+        host, _ = self._threads.of(self._threads.stopped())
+        return host
+
+    def _exception_info(self, _: Arguments) -> Body:
+        failure = self._debugger.failure
+        if failure is None:
+            raise UsageError("the run is not paused at a failure")
+        first, *more = failure.message.splitlines()
+        details = {"message": first, "typeName": failure.error, "stackTrace": "\n".join(more)}
+        return {
+            "exceptionId": failure.error,
+            "description": first,
+            "breakMode": "always",
+            "details": details,
+        }
+
+
+def _number(given: Arguments, name: str) -> int:
+    value = given[name]
+    if not isinstance(value, int):
+        raise TypeError(f"`{name}` is not a number")
+    return value
