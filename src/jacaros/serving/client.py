@@ -6,11 +6,14 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
 from http.client import HTTPConnection, HTTPException, HTTPResponse, HTTPSConnection
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import quote, urlencode, urlsplit
 
 from jacaros.runtime.errors import JacarosError, UsageError
 from jacaros.serving.running import RunningService
+
+if TYPE_CHECKING:
+    from websockets.sync.client import ClientConnection
 
 PATIENCE = 10.0
 """Seconds for the response to a request that does not wait for anything."""
@@ -197,6 +200,31 @@ class Client:
                         yield (found := event)
                         if found["ended"] is not None:
                             break
+
+    # ---- WebSockets
+
+    @contextmanager
+    def socket(self, path: str) -> "Iterator[ClientConnection]":
+        """Open a WebSocket. Its messages end when the system ends.
+
+        Raises:
+            ServiceError: the system has refused it.
+            Unreachable: it does not answer.
+        """
+        from websockets.exceptions import InvalidStatus, WebSocketException  # here: few clients need it
+        from websockets.sync.client import connect
+
+        url = f"ws{self.url.removeprefix('http')}{path}"
+        headers = {"Authorization": f"Bearer {self._token}"}
+        with self._network():
+            try:
+                opened = connect(url, additional_headers=headers, ssl=self._tls, max_size=None)
+            except InvalidStatus as refused:
+                raise ServiceError(json.loads(refused.response.body or b"{}")) from None
+            except WebSocketException as error:
+                raise ValueError(str(error)) from None
+        with opened:
+            yield opened
 
     # ---- HTTP
 

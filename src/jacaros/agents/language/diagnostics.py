@@ -217,3 +217,13 @@ LEVELS: Final[dict[str, Severity]] = {
 def problem(code: str, message: str, span: Span | None, help: str | None = None) -> Diagnostic:
     """Return a diagnostic of a kind, at its usual level."""
     return Diagnostic(LEVELS[code], message, span, help, code)
+
+
+def one_line(error: Exception) -> str:
+    """Return the error without excerpt and help, with its location if it is in a file."""
+    if isinstance(error, AslError) and error.diagnostics:
+        wrong = error.diagnostics[0]
+        in_file = wrong.span is not None and wrong.span.file.name != TEXT
+        return f"{wrong.place()}{wrong.message}" if in_file else wrong.message
+    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+    return lines[0].removeprefix("error: ") if lines else type(error).__name__

@@ -6,7 +6,7 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from jacaros.agents.language.diagnostics import AslError
+from jacaros.agents.language.diagnostics import one_line
 from jacaros.runtime.errors import JacarosError
 from jacaros.runtime.mas.debugging.breakpoints import FAILURES, Breakpoint, LineBreakpoint, breakpoint_at
 from jacaros.runtime.mas.debugging.debugger import Debugger
@@ -93,7 +93,7 @@ class Points:
         try:
             at.set = self._debugger.add_breakpoint(LineBreakpoint(file, at.line, *qualified))
         except JacarosError as error:
-            at.verified, at.message = False, first_line(error)
+            at.verified, at.message = False, one_line(error)
 
     def _name_of(self, path: str) -> str:
         """Return the name by which agents know a file."""
@@ -138,7 +138,7 @@ class Points:
                 made.append(self._debugger.add_breakpoint(breakpoint_at(data)))
                 shown.append({"verified": True})
             except JacarosError as error:
-                shown.append({"verified": False, "message": first_line(error)})
+                shown.append({"verified": False, "message": one_line(error)})
         return shown
 
 
@@ -148,10 +148,3 @@ FILTERS = [{"filter": kind, "label": text.capitalize()} for kind, text in FAILUR
 
 def _by_name(name: str) -> Given:
     return {"event": name} if name[:1] in ("+", "-", "^") else {"plan": {"plan": name}}
-
-
-def first_line(error: Exception) -> str:
-    """Return the first line of an error."""
-    if isinstance(error, AslError) and error.diagnostics:
-        return error.diagnostics[0].message
-    return (str(error).splitlines() or [type(error).__name__])[0].removeprefix("error: ")

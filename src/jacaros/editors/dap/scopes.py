@@ -8,6 +8,7 @@ from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.state.belief_base import literal
 from jacaros.agents.mind.state.intention import EVENT_GOAL, GOAL
 from jacaros.agents.mind.state.plan import Rule
+from jacaros.agents.mind.state.triggers import literal_of
 from jacaros.agents.terms.values import Functor, Term, structure
 from jacaros.editors.dap.threads import Level
 from jacaros.editors.dap.variables import Variable, Variables, plain
@@ -85,8 +86,7 @@ class Scopes:
     def _goal(self, level: Level) -> Iterable[Variable]:
         intention, frame = level.intention, level.frame
         assert frame is not None
-        yield plain("goal", shown_goal(frame))
-        yield self._variables.terms({"arguments": (frame[GOAL][0].functor, *frame[GOAL][1:])})[0]
+        yield {**self._variables.term("goal", literal_of(frame[GOAL], ())), "value": shown_goal(frame)}
         if intention is None:
             yield plain("state", "over")
             return

@@ -5,15 +5,17 @@ from dataclasses import dataclass
 from itertools import count
 from typing import Any
 
+from jacaros.agents.language.diagnostics import one_line
 from jacaros.agents.language.offers import OPERATOR
 from jacaros.agents.mind.mind import Mind
-from jacaros.editors.dap.points import FILTERS, Points, first_line
+from jacaros.editors.dap.points import FILTERS, Points
 from jacaros.editors.dap.scopes import Scopes
 from jacaros.editors.dap.threads import Threads
 from jacaros.editors.dap.variables import Variables
 from jacaros.runtime.clock import of_run
 from jacaros.runtime.errors import JacarosError, UsageError
 from jacaros.runtime.mas.agents.host import AgentHost
+from jacaros.runtime.mas.console import line_of
 from jacaros.runtime.mas.debugging.conditions import bindings_of
 from jacaros.runtime.mas.debugging.debugger import DebugState, StepKind
 from jacaros.runtime.mas.system import System
@@ -23,6 +25,8 @@ from jacaros.serving.service import service_of
 
 Arguments = Mapping[str, Any]
 Body = Mapping[str, Any] | None
+ENTRY = "entry"
+"""Why a run is paused that waits for the editor's breakpoints, or is to stop before its first step."""
 Send = Callable[[Mapping[str, Any]], None]
 CAPABILITIES: Mapping[str, Any] = {
     "supportsConfigurationDoneRequest": True,
@@ -37,6 +41,8 @@ CAPABILITIES: Mapping[str, Any] = {
     "supportsTerminateRequest": True,
     "supportTerminateDebuggee": True,
 }
+
+_CATEGORIES = {"debug": "console", "info": "console"}
 
 
 class Channel:
@@ -115,12 +121,19 @@ class Session:
         self._cannot: tuple[str, ...] = ()
         self._service = service_of(system).open(Caller("editor", "dap", frozenset({OPERATOR})))
         self._ends = [self._debugger.listen(self._debugger_changed), self._points.end]
+        if not settings.launched:  # otherwise, the editor has all output of the process
+            self._ends += [
+                system.listen_to_prints(lambda agent, text: channel.output(line_of(agent, text), "stdout")),
+                system.listen_to_log(
+                    lambda text, level: channel.output(f"{text}\n", _CATEGORIES.get(level, "stderr"))
+                ),
+            ]
         system.when_ended(self._run_ended)
         self._requests: dict[str, Callable[[Arguments], Body]] = {
             "setBreakpoints": self._set_breakpoints,
             "setFunctionBreakpoints": self._set_function_breakpoints,
             "setExceptionBreakpoints": self._set_exception_breakpoints,
-            "configurationDone": self._configuration_done,
+            "configurationDone": lambda _: None,
             "threads": lambda _: {"threads": self._threads.all()},
             "stackTrace": self._stack_trace,
             "scopes": lambda given: {
@@ -156,22 +169,32 @@ class Session:
             with of_run():  # what a request starts pauses with the run
                 body = self._requests[command](given)
         except JacarosError as error:
-            self._channel.refuse(request, first_line(error))
+            self._channel.refuse(request, one_line(error))
         except (AttributeError, KeyError, TypeError, ValueError) as error:
             self._channel.refuse(request, f"invalid arguments of {command}: {type(error).__name__}: {error}")
         else:
             self._channel.respond(request, body)
-            if command == "configurationDone" and not self._settings.stop_on_entry:
-                self._debugger.resume()
+            if command == "configurationDone":
+                self._begin_run()
         finally:
             self._own_request = False
 
     def begin(self) -> None:
-        """Take the breakpoints before the run begins, or continues: it is paused until the editor has sent them."""
+        """Ask for breakpoints. A run that the editor has launched begins when it has sent them."""
         if self._settings.debug:
             self._system.keep_history()
-            self._debugger.pause("entry" if self._settings.launched else "attach")
+            if self._settings.launched:
+                self._debugger.pause(ENTRY)
         self._channel.event("initialized")
+
+    def _begin_run(self) -> None:
+        """Let the launched run begin, or stop it, now that the breakpoints are set."""
+        if self._settings.stop_on_entry and self._settings.debug:
+            self._debugger.pause(ENTRY)
+            self._paused = True
+            self._stopped(self._debugger.state)
+        elif self._settings.launched:
+            self._debugger.resume()
 
     def leave(self, end_run: bool) -> None:
         """End the session; and the run, which stops its robots, or let it continue without breakpoints."""
@@ -202,7 +225,7 @@ class Session:
         if not paused:
             if not self._own_request:  # such as on the live page
                 self._channel.event("continued", threadId=self._threads.id(""), allThreadsContinued=True)
-        elif state.why != "entry" or self._settings.stop_on_entry:
+        elif state.why != ENTRY:
             self._stopped(state)
 
     def _stopped(self, state: DebugState) -> None:
@@ -237,9 +260,6 @@ class Session:
         options = [each["filterId"] for each in given.get("filterOptions") or ()]
         kinds = [*given.get("filters", ()), *options] if self._settings.debug else []
         return {"breakpoints": self._points.set_failures(map(str, kinds))}
-
-    def _configuration_done(self, _: Arguments) -> Body:
-        return None
 
     # ---- control
 

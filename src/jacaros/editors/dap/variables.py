@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from jacaros.agents.terms.values import Functor, List, String, Term, Var, annotations_of, bare, deref
-from jacaros.look.records.words import shown
+from jacaros.look.records.words import cut, shown
 
 Variable = dict[str, Any]
 Make = Callable[[], Iterable[Variable]]
@@ -37,24 +37,32 @@ class Variables:
         """Return a term as a variable."""
         value = deref(term)
         parts, annotations = _parts(bare(value)), annotations_of(value)
-        more = {"type": _kind(value), "evaluateName": name}
+        more = {"type": _kind(value)}
         if not parts and not annotations:
             return plain(name, shown(value), **more)
 
         def make() -> Iterable[Variable]:
-            yield from (self.term(str(number), each) for number, each in enumerate(parts, 1))
-            yield from (self.term("annotation", each) for each in annotations)
+            yield from self._numbered(parts)
+            if annotations:
+                yield self.group("annotations", _listed(annotations), lambda: self._numbered(annotations))
 
-        return self.group(name, shown(value), make, **more)
+        return self.group(name, shown(bare(value)), make, **more)
+
+    def _numbered(self, terms: Sequence[Term]) -> Iterable[Variable]:
+        return (self.term(str(number), each) for number, each in enumerate(terms, 1))
 
     def terms(self, terms: Mapping[str, Term]) -> list[Variable]:
-        """Return terms by name."""
-        return [self.term(name, value) for name, value in terms.items()]
+        """Return the values of variables of a plan by name."""
+        return [{**self.term(name, value), "evaluateName": name} for name, value in terms.items()]
 
 
 def plain(name: str, value: str, **more: Any) -> Variable:
     """Return a variable without parts."""
     return {"name": name, "value": value, "variablesReference": 0, **more}
+
+
+def _listed(terms: Iterable[Term]) -> str:
+    return cut(", ".join(map(shown, terms)))
 
 
 def _parts(term: Term) -> Sequence[Term]:

@@ -60,7 +60,11 @@ class Wire:
 
     def send(self, message: Message) -> None:
         """Send a message; any thread may call it."""
-        body = json.dumps(message).encode()
+        self.send_text(text_of(message))
+
+    def send_text(self, text: str) -> None:
+        """Send a message that is JSON already."""
+        body = text.encode()
         self._output.write(b"Content-Length: %d\r\n\r\n%b" % (len(body), body))
 
     def listen(self, take: Callable[[Message], None], ended: Callable[[str], None]) -> None:
@@ -92,6 +96,11 @@ class Wire:
     def close(self) -> None:
         """Send what waits."""
         self._output.close()
+
+
+def text_of(message: Message) -> str:
+    """Return a message as JSON."""
+    return json.dumps(message)
 
 
 def _length(header: bytes) -> int:

@@ -3,17 +3,21 @@
 import io
 import os
 import re
-from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING
 
 import click
 
+from jacaros.agents.language.diagnostics import one_line
 from jacaros.runtime.cli import run
 from jacaros.runtime.cli.options import variables
 from jacaros.runtime.cli.usage import examples, in_our_form, usage_error
 from jacaros.runtime.errors import JacarosError
 from jacaros.runtime.mas.system import System
 from jacaros.serving.stdio import claim
+
+if TYPE_CHECKING:
+    from jacaros.editors.dap.session import Channel
+    from jacaros.editors.dap.wire import Message, Wire
 
 _ALARMING = re.compile(r"\b(warning|error): ")
 
@@ -36,10 +40,9 @@ def command() -> int:
         request = opening(wire, channel)
         if request is None:
             return 0
-        try:
-            return _launch(request, wire, channel)
-        except click.ClickException as error:
-            raise in_our_form(error) from None
+        if request["command"] == "attach":
+            return _attach(request, wire, channel)
+        return _launch(request, wire, channel)
     except JacarosError as error:
         channel.output(f"{error}\n", "stderr")
         raise
@@ -47,19 +50,17 @@ def command() -> int:
         wire.close()
 
 
-def _launch(request: Mapping[str, Any], wire: Any, channel: Any) -> int:
+def _launch(request: "Message", wire: "Wire", channel: "Channel") -> int:
     from jacaros.editors.dap.opening import command_line
-    from jacaros.editors.dap.points import first_line
     from jacaros.editors.dap.session import Session, Settings
 
     given = request.get("arguments") or {}
-    begun = False
+    begun: list[Session] = []
 
     def open_door(system: System) -> None:
-        nonlocal begun
-        begun = True
         channel.respond(request)
         session = Session(system, channel, Settings.of(given, launched=True))
+        begun.append(session)
         wire.listen(session.take, lambda why: session.leave(end_run=True))
         session.begin()
 
@@ -71,11 +72,29 @@ def _launch(request: Mapping[str, Any], wire: Any, channel: Any) -> int:
         with context:
             code: int = run.command.invoke(context)
     except (JacarosError, click.ClickException) as error:
+        wrong = in_our_form(error) if isinstance(error, click.ClickException) else error
         if not begun:
-            wrong = in_our_form(error) if isinstance(error, click.ClickException) else error
-            channel.refuse(request, first_line(wrong))
-        raise
+            channel.refuse(request, one_line(wrong))
+        raise wrong from None
     return code
+
+
+def _attach(request: "Message", wire: "Wire", channel: "Channel") -> int:
+    from jacaros.editors.dap.relay import relay
+    from jacaros.runtime.cli.talking import client_of
+    from jacaros.serving.shell.wording import error_text
+
+    given = request.get("arguments") or {}
+    url, port, token = (given.get(each) for each in ("url", "port", "token"))
+    try:
+        if url is None and port is not None:
+            url = f"http://127.0.0.1:{port}"
+        client = client_of(None if url is None else str(url), None if token is None else str(token))
+        relay(wire, client, request)
+    except JacarosError as error:
+        channel.refuse(request, one_line(error))
+        raise JacarosError(error_text(error)) from None
+    return 0
 
 
 def _change_to(folder: str) -> None:
@@ -88,11 +107,11 @@ def _change_to(folder: str) -> None:
 class _Console(io.TextIOBase):
     """A stream of a run that the editor shows in its console."""
 
-    def __init__(self, channel: Any, category: str) -> None:
+    def __init__(self, channel: "Channel", category: str) -> None:
         self._channel, self._category = channel, category
 
     @classmethod
-    def both(cls, channel: Any) -> "tuple[_Console, _Console]":
+    def both(cls, channel: "Channel") -> "tuple[_Console, _Console]":
         """Return the streams for the output of agents, and for logs."""
         return cls(channel, "stdout"), cls(channel, "stderr")
 

@@ -103,13 +103,14 @@ class RequestedService:
         if self.serve is None:
             return
         # Imported here: few runs serve callers.
+        from jacaros.editors.dap.door import DebugDoor
         from jacaros.serving.access import Hosts
-        from jacaros.serving.http.door import Address, HttpDoor
+        from jacaros.serving.http.door import Address, HttpDoor, MountedApp
         from jacaros.serving.tokens import read_tokens
 
         host, port = self.serve
         tokens = None if self.tokens is None else read_tokens(self.tokens)
-        mounts = {}
+        mounts: dict[str, MountedApp] = {DebugDoor.PATH: partial(DebugDoor, mas)}
         if find_spec("mcp") is not None:
             from jacaros.serving.mcp.http import PATH, McpOverHttp
 

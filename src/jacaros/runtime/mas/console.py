@@ -120,6 +120,7 @@ class HeardConsole:
         self._console = console
         self.print = console.print
         self._listeners: list[Callable[[str, str], None]] = []
+        self._print_listeners: list[Callable[[str, str], None]] = []
 
     def log(self, text: str, level: str = "info") -> None:
         """Log a line."""
@@ -130,6 +131,16 @@ class HeardConsole:
     def listen(self, listener: Callable[[str, str], None]) -> Callable[[], None]:
         """Call *listener* with text and level of each line from now on. Return a function that ends this."""
         return entered(self._listeners, listener)
+
+    def listen_to_prints(self, listener: Callable[[str, str], None]) -> Callable[[], None]:
+        """Call *listener* with agent and text of each line that agents print. Return a function that ends this."""
+        self.print = self._print_and_tell
+        return entered(self._print_listeners, listener)
+
+    def _print_and_tell(self, agent: str, text: str) -> None:
+        self._console.print(agent, text)
+        for listener in tuple(self._print_listeners):
+            listener(agent, text)
 
 
 def entered(listeners: list[L], listener: L) -> Callable[[], None]:

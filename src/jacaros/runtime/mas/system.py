@@ -75,6 +75,7 @@ class System:
         error: the defect of JaCaROS that ended the run, or None.
         listen_to_log: calls a function with text and level of each line that is logged from now on. Returns a function that
             ends this.
+        listen_to_prints: the same for agent and text of each line that agents print.
         services: the directory facilitator. May be replaced before the run starts.
         tracer: creates the causes; None while nothing observes the run.
         fleet: the fleet that the system has joined, or None.
@@ -101,7 +102,7 @@ class System:
 
             console = RosoutConsole(console, lambda: self.ros.joined)
         self.console: RunConsole = HeardConsole(console)
-        self.listen_to_log = self.console.listen
+        self.listen_to_log, self.listen_to_prints = self.console.listen, self.console.listen_to_prints
         self.directory: Directory = Directory()
         self.activity = Activity()
         self.idleness = Idleness(self.activity)

@@ -40,6 +40,9 @@ HEARTBEAT = 15.0
 WRITES = 1_000
 """Maximum number of writes per second to all event streams together: with many streams, more events share a write."""
 
+Mounted = ASGIApp | BaseRoute
+"""A further application for requests, or a route of another kind, such as for WebSockets."""
+
 
 class Resources:
     """The endpoints.
@@ -53,8 +56,8 @@ class Resources:
         self._clients, self._title = clients, title
         self._streams = 0
 
-    def app(self, mounts: Mapping[str, ASGIApp]) -> ASGIApp:
-        """Return the application, with further ones at their paths."""
+    def app(self, mounts: Mapping[str, Mounted]) -> ASGIApp:
+        """Return the application, with further ones at their paths, and further routes."""
         agent, goal = "/agents/{agent}", "/goals/{id}"
         belief, question = f"{agent}/beliefs", f"{agent}/questions"
         routes: list[BaseRoute] = [
@@ -75,7 +78,7 @@ class Resources:
             self._route("/artifacts", GET=self.artifacts),
             self._route("/questions", GET=self.questions),
             self._route("/questions/{id}", POST=self.answer),
-            *(Route(path, app) for path, app in mounts.items()),  # not below it: MCP has one address
+            *(_route(path, each) for path, each in mounts.items()),
         ]
         return Router(routes, default=unknown)
 
@@ -240,6 +243,11 @@ class Resources:
                 await asyncio.sleep(self._streams / WRITES)
         finally:
             self._streams -= 1
+
+
+def _route(path: str, mounted: Mounted) -> BaseRoute:
+    """Return the route of an application: this path, and none below it."""
+    return mounted if isinstance(mounted, BaseRoute) else Route(path, mounted)
 
 
 async def _until_closed(socket: WebSocket, stream: Stream) -> None:

@@ -21,7 +21,7 @@ from jacaros.runtime.mas.system import System
 from jacaros.serving import running
 from jacaros.serving.access import LOOPBACK, Hosts, listening_socket
 from jacaros.serving.crossing import Crossing, DoorThread
-from jacaros.serving.http.app import Resources
+from jacaros.serving.http.app import Mounted, Resources
 from jacaros.serving.http.clients import Client, Encoder
 from jacaros.serving.http.guard import LARGEST, Guard
 from jacaros.serving.http.protocol import (
@@ -41,8 +41,8 @@ KEEP_ALIVE = 30
 """Seconds that a connection stays open between two requests."""
 MOST_DEFECTS = 100
 """Maximum number of different defects that are logged."""
-MountedApp = Callable[[Crossing], AbstractAsyncContextManager[ASGIApp]]
-"""Makes a further application of the same server on its loop. Its requests have passed the `Guard`."""
+MountedApp = Callable[[Crossing], AbstractAsyncContextManager[Mounted]]
+"""Makes a further application, or route, of the same server on its loop. Its requests have passed the `Guard`."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class HttpDoor:
         system: the run; already started.
         address: where to serve.
         tokens: who may call. None: only who has the random `token`.
-        mounts: further applications by path.
+        mounts: further applications and routes by path.
 
     Attributes:
         url: where it serves.

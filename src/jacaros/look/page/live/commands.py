@@ -14,7 +14,7 @@ from msgspec import Meta, Struct, ValidationError, convert, defstruct
 from msgspec.structs import asdict
 
 from jacaros.agents.body.values import Outputs, to_value
-from jacaros.agents.language.diagnostics import TEXT, AslError
+from jacaros.agents.language.diagnostics import one_line
 from jacaros.agents.language.loader import parse_literal
 from jacaros.agents.language.lowering import Variables, lower_value
 from jacaros.agents.terms.values import Var, bare
@@ -137,16 +137,6 @@ def said(name: str, given: Given) -> str:
         return _SAID[name].format_map(fields)
     except KeyError:
         return f"{name} {' '.join(f'{key}={value}' for key, value in fields.items())}".strip()
-
-
-def one_line(error: Exception) -> str:
-    """Return the error without excerpt and help, with its location if it is in a file."""
-    if isinstance(error, AslError) and error.diagnostics:
-        wrong = error.diagnostics[0]
-        in_file = wrong.span is not None and wrong.span.file.name != TEXT
-        return f"{wrong.place()}{wrong.message}" if in_file else wrong.message
-    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-    return lines[0].removeprefix("error: ") if lines else type(error).__name__
 
 
 # ---- the debugger
