@@ -19,7 +19,7 @@ from jacaros import Mas, UsageError
 from jacaros.look import view
 from jacaros.look.page.live import server
 from jacaros.look.page.live import timing as allowance
-from jacaros.look.page.live.access import Access
+from jacaros.look.page.live.access import Access, security_headers
 from jacaros.look.records import records
 from played import played
 
@@ -94,6 +94,13 @@ async def test_the_page_and_its_modules_have_security_headers(lab) -> None:
     assert headers["Referrer-Policy"] == "no-referrer"
     status, headers, _content = await get(lab.address, "live.js")
     assert (status, headers["Content-Type"]) == (200, "text/javascript; charset=utf-8")
+
+
+def test_a_page_can_be_framed_only_on_request() -> None:
+    assert security_headers("127.0.0.1")["X-Frame-Options"] == "DENY"
+    framed = security_headers("127.0.0.1", framed=True)
+    assert "X-Frame-Options" not in framed
+    assert "frame-ancestors *" in framed["Content-Security-Policy"]
 
 
 @pytest.mark.parametrize(

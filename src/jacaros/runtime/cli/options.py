@@ -166,8 +166,12 @@ view_options = with_options(
         click.Choice([OBSERVER, USER, OPERATOR]),
         default=OPERATOR,
     ),
+    option(
+        "--view-in-frame",
+        "Let other pages show the page in a frame, as editors do in a tab. No browser is opened.",
+    ),
 )
-"""Add the options ``--view`` and ``--view-role``, and `place_options`; the command's class must be `ViewCommand`."""
+"""Add the options of a run's page, and `place_options`; the command's class must be `ViewCommand`."""
 
 
 class ViewCommand(click.Command):

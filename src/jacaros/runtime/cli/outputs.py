@@ -37,8 +37,8 @@ class RequestedOutputs:
         replay: file for the replay page, or None.
         ground_truth: file for the ground truth of the world, or None.
         view: ``page`` (in the browser), ``terminal``, or None for no view.
-        view_address, view_port, view_token, view_role: where to serve the page, and what it may do; see
-            `jacaros.look.page.live.run_view.RunView`.
+        view_address, view_port, view_token, view_role, view_in_frame: where to serve the page, what it may do, and whether
+            other pages may frame it; see `jacaros.look.page.live.run_view.RunView`.
         record_limit: size limit of the recording, in megabytes.
     """
 
@@ -50,6 +50,7 @@ class RequestedOutputs:
     view_port: int = 0
     view_token: str | None = None
     view_role: str = OPERATOR
+    view_in_frame: bool = False
     record_limit: int = RECORD_LIMIT
 
     @classmethod

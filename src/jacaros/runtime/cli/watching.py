@@ -94,9 +94,10 @@ class Watching(ExitStack):
         from jacaros.look.page.live.run_view import RunView  # here: it imports a server
 
         outputs = self._outputs
-        view = RunView(mas, outputs.view_address, outputs.view_port, outputs.view_token, outputs.view_role)
+        place = (outputs.view_address, outputs.view_port, outputs.view_token)
+        view = RunView(mas, *place, outputs.view_role, outputs.view_in_frame)
         log_address(view.address, outputs.view_address, self.log, _MAY[outputs.view_role])
-        view.awaited = open_page(view.address) is not None
+        view.awaited = not outputs.view_in_frame and open_page(view.address) is not None
         return view
 
     def _ground_truth(self, path: Path, mas: System) -> GroundTruthFile:

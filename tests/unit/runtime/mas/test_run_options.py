@@ -78,7 +78,7 @@ def test_tests_run_on_the_virtual_clock_with_a_seed_by_default() -> None:
 
 def test_the_command_has_no_option_of_a_run_under_another_name() -> None:
     outputs = {"record", "record_limit", "replay", "ground_truth", "quiet", "explained"}
-    outputs |= {"view", "view_port", "view_address", "view_token", "view_role"}
+    outputs |= {"view", "view_port", "view_address", "view_token", "view_role", "view_in_frame"}
     outputs |= {"serve", "tokens", "tls_cert", "tls_key", "offer", "lifecycle", "console"}
     combined = {"file", "clock", "param", "params_file", "node", "all_nodes"}
     given = {each.name for each in command.params if isinstance(each, click.Parameter)}

@@ -18,16 +18,18 @@ class Access(Hosts):
     Args:
         address: address that the server is bound to.
         token: token in the path; random by default.
+        framed: whether other pages may show this one in a frame, as editors do in a tab.
 
     Attributes:
-        token: token in the path.
+        token, framed: as given.
 
     Raises:
         UsageError: the token is too short, or contains characters with a meaning in URLs.
     """
 
-    def __init__(self, address: str = LOOPBACK, token: str | None = None) -> None:
+    def __init__(self, address: str = LOOPBACK, token: str | None = None, framed: bool = False) -> None:
         super().__init__(address)
+        self.framed = framed
         self.token = token if token is not None else secrets.token_urlsafe(24)
         if not is_token(self.token):
             raise UsageError(
@@ -71,17 +73,23 @@ class Pages:
         return _TYPES[file.suffix], self._read[path]
 
 
-def security_headers(host: str) -> Mapping[str, str]:
-    """Return the headers of every response: no caching, framing, type guessing, or loading from other sites."""
+def security_headers(host: str, framed: bool = False) -> Mapping[str, str]:
+    """Return the headers of every response: no caching, framing, type guessing, or loading from other sites.
+
+    *framed*: allow framing by any page. The origin of an editor's tab is not known beforehand; only a page that knows the
+    token can frame this one.
+    """
+    ancestors = "*" if framed else "'none'"
     policy = (
         "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
-        f"connect-src 'self' ws://{host} wss://{host}; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+        f"connect-src 'self' ws://{host} wss://{host}; base-uri 'none'; form-action 'none'; "
+        f"frame-ancestors {ancestors}"
     )
     return {
+        **({} if framed else {"X-Frame-Options": "DENY"}),
         "Content-Security-Policy": policy,
         "Cache-Control": "no-store",
         "X-Content-Type-Options": "nosniff",
-        "X-Frame-Options": "DENY",
         "Referrer-Policy": "no-referrer",
         "Cross-Origin-Opener-Policy": "same-origin",
         "Cross-Origin-Resource-Policy": "same-origin",

@@ -37,6 +37,7 @@ class RunView:
         token: token in the path; None for a random one.
         role: what pages may do: an ``observer`` only looks, a ``user`` also gives goals that agents offer, and answers
             their questions; an ``operator`` commands everything.
+        framed: whether other pages may show the page in a frame.
 
     Attributes:
         watcher: receives the run.
@@ -48,7 +49,13 @@ class RunView:
     """
 
     def __init__(
-        self, system: System, address: str, port: int, token: str | None, role: str = OPERATOR
+        self,
+        system: System,
+        address: str,
+        port: int,
+        token: str | None,
+        role: str = OPERATOR,
+        framed: bool = False,
     ) -> None:
         self._system = system
         self.awaited = False
@@ -57,7 +64,7 @@ class RunView:
         self.commands = Commands(lambda what: service.note(self._caller, what))
         open_session = lambda: service.open(self._caller)  # noqa: E731
         self.watcher = LiveView(system.deployment.name, self.commands, open_session=open_session)
-        access = Access(address, token)
+        access = Access(address, token, framed)
         self._server = LiveServer(bound_socket(address, port), access, self.watcher)
         self.address = self._server.address
         self._open_address = self.address.removesuffix(f"{access.token}/")

@@ -193,7 +193,7 @@ class LiveServer:
         hosts = request.headers.get_all("Host")
         if not self._access.knows_host(hosts):
             return _response(HTTPStatus.FORBIDDEN, {})
-        headers = security_headers(hosts[0])
+        headers = security_headers(hosts[0], self._access.framed)
         if not self._access.knows_origin(request.headers.get_all("Origin"), hosts[0]):
             return _response(HTTPStatus.FORBIDDEN, headers)
         path = self._access.path(request.path)
