@@ -10,6 +10,7 @@
 #                    make bench BENCH=--quick   about 3 minutes, writes nothing; JASON=/path/to/jason adds Jason
 # make experiment    all runs of docs/experiment.md, in about 25 minutes; rewrites their record, the page and its pictures
 # make reference     reference pages and pictures generated from the code
+# make vsix          the VS Code extension, editors/vscode/dist/jacaros.vsix; needs Node.js 18 or later with npm
 # make release       wheel, source distribution and bill of materials (CycloneDX) in dist/, the same on every machine
 #
 # PYTHON=python3.12 make demo   use another interpreter (3.11 or newer)
@@ -18,7 +19,7 @@
 VENV := .venv
 PYTHON ?= $(shell tools/find_python.sh)
 
-.PHONY: demo test test-all quick coverage mutants reference experiment bench release clean
+.PHONY: demo test test-all quick coverage mutants reference experiment bench release vsix clean
 
 demo: $(VENV)/.installed
 	$(VENV)/bin/python tools/demo.py
@@ -53,6 +54,10 @@ release: $(VENV)/.installed-dev
 	$(VENV)/bin/python tools/build_release.py dist
 	$(VENV)/bin/twine check --strict dist/*
 	PYTHON=$(VENV)/bin/python tools/make_sbom.sh dist
+
+# With the version of the package.
+vsix:
+	cd editors/vscode && npm ci --silent && npm run --silent package -- $$(sed -n 's/^version = "\(.*\)"/\1/p' ../../pyproject.toml)
 
 bench: $(VENV)/.installed $(VENV)-bench/.installed
 	$(VENV)/bin/python benchmarks/bench.py $(BENCH)
