@@ -1,0 +1,1 @@
+[(plan) (block) (sub_plans) (comment)] @fold
