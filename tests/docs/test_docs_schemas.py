@@ -8,7 +8,9 @@ import pytest
 from jsonschema import Draft202012Validator
 from ruamel.yaml import YAML
 
+from jacaros.editors import schemas
 from jacaros.robots.mapping.file import is_mapping
+from jacaros.robots.streams import OPERATORS
 from jacaros.robots.world.files.faults import is_fault_file
 from jacaros.robots.world.files.world import is_world
 
@@ -55,3 +57,19 @@ def test_the_schemas_are_current(tmp_path: Path) -> None:
     for kind in KINDS:
         written, made = SCHEMAS / f"{kind}.json", tmp_path / f"{kind}.json"
         assert written.read_text(encoding="utf-8") == made.read_text(encoding="utf-8"), "run `make reference`"
+
+
+def test_every_key_of_a_mapping_says_what_it_means() -> None:
+    operators = {word for name, each in OPERATORS.items() for word in (name, *each.required, *each.optional)}
+    silent = set()
+    stack = [schemas.mappings()]
+    while stack:
+        each = stack.pop()
+        inner = each.get("properties", {})
+        if "artifacts" not in inner and "properties" not in inner:
+            silent |= {
+                key for key, value in inner.items() if "description" not in value and "enum" not in value
+            }
+        stack += [value for value in (*inner.values(), *each.get("anyOf", ())) if isinstance(value, dict)]
+        stack += [each[key] for key in ("additionalProperties", "items") if isinstance(each.get(key), dict)]
+    assert silent <= operators

@@ -130,9 +130,88 @@ def faults() -> Schema:
     return mapping({"faults": named({"anyOf": kinds})}, ["faults"])
 
 
+POLICIES: Schema = mapping(
+    {
+        **{key: {"enum": list(words)} for key, words in properties.CHOICES.items()},
+        "depth": {"type": "integer", "minimum": 1, "description": "messages that are kept"},
+        "deadline": {"type": "number", "description": "seconds"},
+    }
+)
+QOS: Schema = {"anyOf": [{"enum": list(properties.PROFILES)}, POLICIES]}
+MEANINGS: Mapping[str, str] = {
+    "action": "name of the action",
+    "as": "the agent's form of the value: an angle of a quaternion, a constant's name, an atom, or a number about a list",
+    "dead_band": "changes up to this size are ignored; a number, or a list with one per value",
+    "default": "default value, which also sets the type",
+    "description": "text for `jacaros describe` and editors",
+    "duration": "seconds during which a message is repeated",
+    "each": "an array of the message: one property for each element",
+    "expect": "observations that must follow, else the operation fails",
+    "expire": "seconds without a message after which the property is removed",
+    "feedback": "properties from the feedback of the goal",
+    "fields": "values in order: paths of fields of the message",
+    "frame": "the only accepted frame of messages",
+    "goal": "fields of the goal, with values or `$parameter`",
+    "lateness": "seconds to wait for late messages",
+    "latest_only": "newest-only delivery (default: true); false delivers all changes",
+    "least": "replaces smaller numbers of the agent",
+    "maximum": "greatest value of a number",
+    "meanwhile": "observations that make the operation fail while it runs",
+    "minimum": "smallest value of a number",
+    "mode": "`verbose` (default), or `on_demand`: updated only by operations with `refresh`",
+    "name": "name of the value in descriptions",
+    "names": "atoms for values, such as `{0: off, 1: on}`",
+    "node": "the node that has the parameter (default: our own)",
+    "offset": "added after `scale`",
+    "otherwise": "substitute for numbers that are not finite and for missing elements",
+    "outputs": "fields of the answer, which the caller gets in variables",
+    "parameter": "its name in the graph (default: the property's)",
+    "parameters": "names of the arguments; write `$name` for one in values",
+    "path": "path of a field, such as `pose.pose.position.x`",
+    "publish": "topic on which a message is published",
+    "qos": "quality of service",
+    "rate": "times per second",
+    "read_only": "the parameter cannot change after the start",
+    "refresh": "properties to update to the newest values",
+    "request": "fields of the request, with values or `$parameter`",
+    "result": "fields of the result",
+    "round": "decimals; `down` rounds to the integer below",
+    "sample": "number of elements of a list, evenly spread, or their positions from 0 to 1",
+    "scale": "factor: the agent's value is scale * value + offset",
+    "service": "name of the service",
+    "set_parameter": "name of the parameter",
+    "source": "frame whose pose it is",
+    "success": "field of the answer that says whether it succeeded",
+    "suspend": "what happens to the goal while the intention is suspended",
+    "target": "frame in which the pose is",
+    "timeout": "seconds until it fails",
+    "topic": "name of the topic",
+    "type": "type, such as `nav_msgs/msg/Odometry`",
+    "unit": "unit for the agent",
+    "uses": "resources that no other operation may use meanwhile, such as `wheels`",
+    "value": "value, or `$parameter`",
+    "when_changed": "send it only when the values have changed",
+}
+"""The keys of mapping files below artifacts, except those of derived properties' operators."""
+WORDS: Mapping[str, Schema] = {
+    "as": {"enum": list(fields.KINDS)},
+    "mode": {"enum": ["verbose", "on_demand"]},
+    "qos": QOS,
+    "suspend": {"enum": ["cancel", "go_on"]},
+    "unit": {"enum": list(fields.UNITS)},
+    **{each: {"type": "boolean"} for each in ("latest_only", "read_only", "when_changed")},
+}
+"""The values of keys that have a choice."""
+
+
 def keys_of(keys: Iterable[str], *required: str) -> Schema:
-    """Return the schema of a mapping with these keys and any values."""
-    return mapping(dict.fromkeys(keys, ANYTHING), required)
+    """Return the schema of a mapping with these keys."""
+    found = {each: {**WORDS.get(each, ANYTHING), **_meaning(each)} for each in keys}
+    return mapping(found, required)
+
+
+def _meaning(key: str) -> Schema:
+    return {"description": MEANINGS[key]} if key in MEANINGS else {}
 
 
 def mappings() -> Schema:
@@ -140,7 +219,7 @@ def mappings() -> Schema:
     value = {"type": ["string", "number", "boolean", "null"]}
     values = {"anyOf": [value, {"type": "array"}]}
     field = {"anyOf": [value, keys_of(fields.FIELD, "path")]}
-    of_message = {"fields": {"anyOf": [field, listed(field)]}}
+    of_message = {"fields": {"anyOf": [field, listed(field)], **_meaning("fields")}}
     topic = [
         {**each, "properties": {**each["properties"], **of_message}}
         for each in (keys_of(properties.PROPERTY, "topic"), keys_of(properties.SIGNAL, "topic"))

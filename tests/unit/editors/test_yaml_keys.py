@@ -32,6 +32,9 @@ def proposed(marked: str) -> set[str]:
         ("operations:\n  go:\n    ‸", "publish", "operations"),
         ("operations:\n  go:\n    publish: x\n    ‸", "rate", "request"),
         ("operations:\n  go:\n    - publish: x\n      ‸", "rate", "request"),
+        ("properties:\n  p:\n    topic: /x\n    qos: ‸", "latched", "reliability"),
+        ("properties:\n  p:\n    topic: /x\n    qos: {durability: ‸", "volatile", "latched"),
+        ("properties:\n  p:\n    topic: /x\n    fields: [{path: x, unit: de‸", "degrees", "metres"),
         ("operations:\n  go:\n    wrong: x\n    ‸", "publish", "wrong"),
         (
             "properties:\n  p:\n    topic: /x  # a: b\n    fields:\n      - {path: x, ‸}",
@@ -60,6 +63,7 @@ def test_a_key_ends_in_a_colon_and_says_what_it_means() -> None:
         ("robots:\n  - battery: {le‸vel: 1}", "charge at the start"),
         ("robots:\n  - battery:\n      level‸: 1", "charge at the start"),
         ("bor‸der: walls", "`open`, `walls`"),
+        ("properties:\n  p:\n    topic: /x\n    expi‸re: 3", "the property is removed"),
     ],
 )
 def test_hover_says_what_a_key_means(marked: str, told: str) -> None:

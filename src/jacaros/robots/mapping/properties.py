@@ -59,8 +59,9 @@ def positive(node: YamlNode) -> float:
 PROFILES = {"sensor_data": SENSOR_DATA, "default": DEFAULT_QOS, "latched": LATCHED}
 
 
-_CHOICES = {"reliability": ("reliable", "best_effort"), "durability": ("volatile", "transient_local")}
-_PARTS = {word: f"write qos: {{{key}: {word}}}" for key, words in _CHOICES.items() for word in words}
+CHOICES = {"reliability": ("reliable", "best_effort"), "durability": ("volatile", "transient_local")}
+"""Words of a quality of service."""
+_PARTS = {word: f"write qos: {{{key}: {word}}}" for key, words in CHOICES.items() for word in words}
 """What to write for a part of a quality of service that is given alone."""
 
 
@@ -72,7 +73,7 @@ def read_qos(node: YamlNode) -> QoS:
             node.wrong(f"unknown QoS profile {shown(node.value)}", _PARTS.get(str(node.value), listed))
         return PROFILES.get(node.value, DEFAULT_QOS)
     entries = node.mapping("reliability", "durability", "depth", "deadline")
-    given: dict[str, Any] = {key: entries[key].choice(*_CHOICES[key]) for key in _CHOICES if key in entries}
+    given: dict[str, Any] = {key: entries[key].choice(*CHOICES[key]) for key in CHOICES if key in entries}
     if "depth" in entries:
         given["depth"] = entries["depth"].whole(1, DEFAULT_QOS.depth)
     if "deadline" in entries:
