@@ -113,6 +113,10 @@ def test_hover_says_where_a_belief_comes_from() -> None:
     assert found.text.startswith("```\nvisited(Room)\n```")
     assert "- added: robot.asl:5" in found.text
     assert "- handled: robot.asl:8" in found.text
+    assert "- source: `self`" in found.text
+    told = hover(*edited("+!a <- .send(b, tell, x(1)).\n+!b : ‸x(_)."))
+    assert told is not None
+    assert "- source: the sender of a message" in told.text
 
 
 @pytest.mark.parametrize(
@@ -124,7 +128,13 @@ def test_hover_says_where_a_belief_comes_from() -> None:
         ),
         (
             "+!x : po‸se(A, B, C).",
-            ["pose(X, Y, Yaw)", "property of `Wheels`", "- `Yaw`: degrees", "where it is"],
+            [
+                "pose(X, Y, Yaw)",
+                "property of `Wheels`",
+                "- `Yaw`: degrees",
+                "where it is",
+                "source: `percept`",
+            ],
         ),
         ("+bu‸mp(S).", ["signal of `Wheels`", "it has hit something"]),
         ("+!x <- .abo‸lish(p).", [".abolish(P)", "internal action, 1 argument", "deletes all beliefs"]),
@@ -140,7 +150,22 @@ def test_hover_describes(marked: str, told: list[str]) -> None:
     assert [each for each in told if each not in found.text] == []
 
 
-def test_nothing_is_known_of_a_variable_or_a_blank() -> None:
+def test_hover_of_a_variable_gives_its_unit() -> None:
+    found = hover(*edited("+!x : pose(_, _, A‸) <- drive(A, 1).\n+!y(A) <- drive(1, A)."))
+    assert found is not None
+    assert (
+        found.text
+        == "- degrees (`Yaw` of `pose(X, Y, Yaw)`)\n- a number in metres (`length` of `drive(length, speed)`)"
+    )
+
+
+def test_hover_shows_the_comment_above_a_plan() -> None:
+    found = hover(*edited("+!a <- !g‸o(1).\n\n// Drive to a room.\n// It may fail.\n+!go(R)."))
+    assert found is not None
+    assert "Drive to a room.\nIt may fail." in found.text
+
+
+def test_nothing_is_known_of_other_variables_or_blanks() -> None:
     assert hover(*edited("+!x(A‸) <- b(A).")) is None
     assert hover(*edited("+!x  ‸  <- a.")) is None
 

@@ -43,6 +43,12 @@ class ArgumentWords(NamedTuple):
     words: str = ""
     unit: str = ""
 
+    @property
+    def meaning(self) -> str:
+        """Kind and unit, such as ``a number in metres``; empty if nothing is known."""
+        has_unit = not self.unit or self.unit in self.words
+        return self.words if has_unit else f"{self.words} in {self.unit}" if self.words else self.unit
+
 
 @dataclass(frozen=True)
 class Offered:

@@ -7,10 +7,10 @@ from jacaros.agents.language.diagnostics import SourceFile
 from jacaros.agents.language.term_parser import PERFORMATIVES
 from jacaros.agents.terms.functions import ARITIES
 from jacaros.editors.symbols.artifact_types import Offered
-from jacaros.editors.symbols.descriptions import described, summary_of_action
+from jacaros.editors.symbols.descriptions import described, names_of, prefix_of, summary_of_action
 from jacaros.editors.symbols.docstrings import parameters_in, short_unit
 from jacaros.editors.symbols.index import Index
-from jacaros.editors.symbols.model import Completion, Kind, Position, Symbol
+from jacaros.editors.symbols.model import Completion, Kind, Position
 from jacaros.editors.symbols.tokens_at import OpenCall, Reading, reading_at
 
 _OF_LABELS: Final = {
@@ -170,11 +170,10 @@ def _annotations(reading: Reading) -> Iterator[Completion]:
 
 
 def _symbols(index: Index, reading: Reading, kind: Kind, rank: int = 0) -> Iterator[Completion]:
+    written = "".join(each.text for each in reading.tokens[-2:])
     for symbol in index.symbols(kind):
-        if symbol.scope and f"{symbol.scope}::" not in "".join(each.text for each in reading.tokens[-2:]):
-            name = f"{symbol.scope}::{symbol.name}"
-        else:
-            name = symbol.name
+        space = prefix_of(symbol)
+        name = symbol.name if written.endswith(space) else f"{space}{symbol.name}"
         occurrences = index.of(symbol)
         if index.offered(symbol) or all(each.span == reading.word_span for each in occurrences):
             continue  # a property, or what is being written
@@ -249,11 +248,3 @@ def _call(
 def _snippet(name: str, names: Iterable[str]) -> str:
     places = [f"${{{number}:{each or '_'}}}" for number, each in enumerate(names, 1)]
     return f"{name}({', '.join(places)})" if places else name
-
-
-def names_of(index: Index, symbol: Symbol) -> tuple[str, ...]:
-    """Return a name for each argument of a belief or goal: that of a variable somewhere, or an empty text."""
-    names = [""] * symbol.arity
-    for occurrence in index.of(symbol):
-        names = [one or other.lstrip("_") for one, other in zip(names, occurrence.arguments, strict=True)]
-    return tuple(names)

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator
 from pathlib import PurePath
 
+from jacaros.agents.language.diagnostics import Span
 from jacaros.agents.mind.actions.internal_action import InternalAction
 from jacaros.agents.terms.functions import ARITIES
 from jacaros.editors.symbols.artifact_types import Offered
@@ -27,7 +28,7 @@ _ROLES: tuple[tuple[str, tuple[Role, ...]], ...] = (
 def described(index: Index, symbol: Symbol) -> tuple[str, str]:
     """Return one line, and Markdown, about a belief or goal."""
     occurrences = index.of(symbol)
-    lines = list(_where(occurrences, symbol))
+    lines = [*_where(occurrences, symbol), *_sources(index, symbol)]
     files = {PurePath(each.span.file.name).name for each in occurrences}
     return f"{symbol.kind} in {', '.join(sorted(files)[:2])}" if files else symbol.kind, "\n".join(lines)
 
@@ -42,20 +43,53 @@ def _where(occurrences: Iterable[Occurrence], symbol: Symbol) -> Iterator[str]:
             yield f"- {what}: {', '.join(places[:_FEW])}{more}"
 
 
+def _sources(index: Index, symbol: Symbol) -> Iterator[str]:
+    """Say which sources a belief can have."""
+    if symbol.kind != "belief":
+        return
+    roles = {each.role for each in index.of(symbol)}
+    known = [
+        "`percept`" if index.offered(symbol) else "",
+        "`self`" if roles & {"defines", "adds"} else "",
+        "the sender of a message" if "tells" in roles else "",
+        "a caller" if "offers" in roles else "",
+    ]
+    if any(known):
+        yield f"- source: {', '.join(filter(None, known))}"
+
+
 def _link(occurrence: Occurrence) -> str:
     span = occurrence.span
     return f"{PurePath(span.file.name).name}:{span.line}"
 
 
+def names_of(index: Index, symbol: Symbol) -> tuple[str, ...]:
+    """Return a name for each argument of a belief or goal: that of a variable somewhere, or an empty text."""
+    names = [""] * symbol.arity
+    for occurrence in index.of(symbol):
+        names = [one or other.lstrip("_") for one, other in zip(names, occurrence.arguments, strict=True)]
+    return tuple(names)
+
+
+def prefix_of(symbol: Symbol) -> str:
+    """Return the namespace of a belief or goal as written before its name; empty for the default one."""
+    return f"{symbol.scope.partition('#')[0]}::" if symbol.scope else ""
+
+
+def comment_above(clause: Span) -> str:
+    """Return the comment in the lines right above a clause."""
+    lines = clause.file.lines
+    first = clause.line - 1
+    while first > 0 and lines[first - 1].startswith("//"):
+        first -= 1
+    return "\n".join([each.lstrip("/").strip() for each in lines[first : clause.line - 1]])
+
+
 def signature_of(offered: Offered) -> str:
     """Return an operation or property with kinds and units of its values, in several lines of Markdown."""
-    lines = [f"```\n{offered}\n```", f"{offered.how} of `{offered.holder}`"]
-    lines += [
-        f"- `{each.name}`: {each.words or each.unit}" for each in offered.arguments if each.words or each.unit
-    ]
-    return "\n\n".join(
-        [*lines[:2], *(["\n".join(lines[2:])] if lines[2:] else []), *filter(None, [offered.text])]
-    )
+    values = [f"- `{each.name}`: {each.meaning}" for each in offered.arguments if each.meaning]
+    parts = [f"```\n{offered}\n```", f"{offered.how} of `{offered.holder}`", "\n".join(values), offered.text]
+    return "\n\n".join(filter(None, parts))
 
 
 def summary_of_action(action: InternalAction) -> str:

@@ -41,7 +41,7 @@ def _of(index: Index, occurrence: Occurrence, tokens: list[Token], number: int) 
         is_value = token.kind != "variable" and argument.name
         if symbol.kind == "operation" and is_value and token.text.casefold() != argument.name.casefold():
             at = Position(token.line, token.column)
-            yield Hint(at, f"{argument.name}:", "parameter", argument.words)
+            yield Hint(at, f"{argument.name}:", "parameter", argument.meaning)
         if argument.unit and tokens[end - 1].text != "_":
             at = Position(tokens[end - 1].line, tokens[end - 1].end)
             yield Hint(at, short_unit(argument.unit), "unit", argument.unit)
