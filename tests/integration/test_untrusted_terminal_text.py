@@ -67,6 +67,7 @@ RUNS: dict[str, list[list[str]]] = {
     "demo": [["demo", EVIL]],
     "new": [["new", EVIL], ["new", "robot", "--template", EVIL]],
     "mcp": [["mcp", EVIL]],
+    "dap": [["dap", EVIL]],
     "achieve": [["achieve", EVIL, *NOWHERE], ["achieve", EVIL, "go", *NOWHERE]],
     "ask": [["ask", EVIL, *NOWHERE], ["ask", "p(X)", "--url", EVIL, "--token", EVIL]],
     "tell": [["tell", EVIL, *NOWHERE]],

@@ -26,8 +26,6 @@ class DebugDoor(WebSocketRoute):
         crossing: the way to it.
     """
 
-    PATH = PATH
-
     def __init__(self, system: System, crossing: Crossing) -> None:
         super().__init__(PATH, self.serve)
         self._system, self._crossing = system, crossing

@@ -103,6 +103,7 @@ class RequestedService:
         if self.serve is None:
             return
         # Imported here: few runs serve callers.
+        from jacaros.editors.dap.door import PATH as DEBUG
         from jacaros.editors.dap.door import DebugDoor
         from jacaros.serving.access import Hosts
         from jacaros.serving.http.door import Address, HttpDoor, MountedApp
@@ -110,7 +111,7 @@ class RequestedService:
 
         host, port = self.serve
         tokens = None if self.tokens is None else read_tokens(self.tokens)
-        mounts: dict[str, MountedApp] = {DebugDoor.PATH: partial(DebugDoor, mas)}
+        mounts: dict[str, MountedApp] = {DEBUG: partial(DebugDoor, mas)}
         if find_spec("mcp") is not None:
             from jacaros.serving.mcp.http import PATH, McpOverHttp
 
