@@ -103,8 +103,8 @@ class RequestedService:
         if self.serve is None:
             return
         # Imported here: few runs serve callers.
-        from jacaros.editors.dap.door import PATH as DEBUG
         from jacaros.editors.dap.door import DebugDoor
+        from jacaros.editors.dap.relay import PATH as DEBUG
         from jacaros.serving.access import Hosts
         from jacaros.serving.http.door import Address, HttpDoor, MountedApp
         from jacaros.serving.tokens import read_tokens

@@ -11,7 +11,8 @@ from dap_client import DapClient
 
 import jacaros
 from jacaros import Mas
-from jacaros.editors.dap.door import PATH, DebugDoor
+from jacaros.editors.dap.door import DebugDoor
+from jacaros.editors.dap.relay import PATH
 from jacaros.runtime.mas.debugging import DebugState
 from jacaros.serving.http.door import Address, HttpDoor
 from jacaros.serving.tokens import Tokens
