@@ -227,7 +227,8 @@ class Mas:
         Args:
             question: as for `jacaros why`.
             at: seconds since the history began. Default: now.
-            agent, robot: restrict the answer to this agent or robot.
+            agent: restrict the answer to this agent.
+            robot: restrict the answer to this robot.
 
         Raises:
             UsageError: the question is not understood.
