@@ -11,6 +11,7 @@
 # make experiment    all runs of docs/experiment.md, in about 25 minutes; rewrites their record, the page and its pictures
 # make reference     reference pages and pictures generated from the code
 # make vsix          the VS Code extension, editors/vscode/dist/jacaros.vsix; needs Node.js 18 or later with npm
+# make site          the documentation as a website in build/site
 # make release       wheel, source distribution and bill of materials (CycloneDX) in dist/, the same on every machine
 #
 # PYTHON=python3.12 make demo   use another interpreter (3.11 or newer)
@@ -19,7 +20,7 @@
 VENV := .venv
 PYTHON ?= $(shell tools/find_python.sh)
 
-.PHONY: demo test test-all quick coverage mutants reference experiment bench release vsix clean
+.PHONY: demo test test-all quick coverage mutants reference experiment bench site release vsix clean
 
 demo: $(VENV)/.installed
 	$(VENV)/bin/python tools/demo.py
@@ -48,6 +49,9 @@ reference: $(VENV)/.installed-dev
 
 experiment: $(VENV)/.installed-dev
 	$(VENV)/bin/python experiment/run.py
+
+site: $(VENV)/.installed-dev
+	$(VENV)/bin/python tools/make_site.py
 
 release: $(VENV)/.installed-dev
 	rm -rf dist

@@ -96,6 +96,7 @@ def parts() -> list[Part]:
     """All parts, in the order in which they start."""
     found = [
         Part("chromium", (*INSTALL, "chromium", "chromium", "chromium-browser", "google-chrome"), "install"),
+        Part("site-install", ("tools/install_site_checks.sh",), "install"),
         Part("mosquitto", (*INSTALL, "mosquitto", "mosquitto"), "install"),
         Part("zsh", (*INSTALL, "zsh", "zsh"), "install"),
         Part("fish", (*INSTALL, "fish", "fish"), "install", needs="zsh"),
@@ -154,6 +155,7 @@ def parts() -> list[Part]:
         Part("mistakes", (*PYTEST, "tests/mistakes"), budget=170),
         Part("shells", (*PYTEST, "tests/shells"), needs="fish", skips_fail=True),
         Part("browser", (*PYTEST, "tests/unit/look", "-m", "browser"), needs="chromium", skips_fail=True),
+        Part("site", (*PYTEST, "tests/site"), needs="site-install", budget=600, skips_fail=True),
     ]
     for minor in (12, 13, 14):
         python = newer_python(minor)
