@@ -42,10 +42,14 @@ class Clock(ABC):
     Attributes:
         virtual: whether time moves in jumps.
         paused: whether time and timers stand still.
+        speed: seconds of this clock per second of real time; 0.0 for a clock that does not follow real time.
+        has_speed: whether the speed can be set.
     """
 
     virtual = False
     paused = False
+    speed = 1.0
+    has_speed = False
 
     def __init__(self) -> None:
         self._timers = TimerQueue()
@@ -117,6 +121,8 @@ class WallClock(Clock):
     Args:
         speed: seconds of this clock per second of real time, greater than 0.
     """
+
+    has_speed = True
 
     def __init__(self, speed: float = 1.0) -> None:
         super().__init__()
@@ -236,6 +242,7 @@ class VirtualClock(Clock):
     """
 
     virtual = True
+    speed = 0.0
     elapsed = 0.0
     CYCLES_PER_MILLISECOND = 10_000
     """Time moves 1 ms per this number of busy cycles, so a plan that never ends cannot freeze the world."""
@@ -308,7 +315,7 @@ class VirtualClock(Clock):
             loop.call_soon(timer.ring, context=self._context)
 
 
-class _VirtualSelector(selectors.DefaultSelector):
+class VirtualSelector(selectors.DefaultSelector):
     """Turns the loop's "sleep until something happens" into a jump of the virtual clock."""
 
     PATIENCE = 8
@@ -336,16 +343,16 @@ class _VirtualSelector(selectors.DefaultSelector):
                 # The loop has counted the callbacks of this pass: put something in its place.
                 self.ready[place] = asyncio.Handle(_ignore, (), asyncio.get_running_loop())
 
-    def _select_paused(self, timeout: float | None) -> list[tuple[selectors.SelectorKey, int]]:
-        """Serve sockets, and callbacks that do not belong to the run."""
+    def hold_run(self) -> None:
+        """While the clock is paused, set the ready callbacks of the run aside; the others stay."""
         for _ in range(len(self.ready)):
             handle = self.ready.popleft()
             (self.held if _is_of_run(handle) else self.ready).append(handle)
-        return super().select(0 if timeout is not None and timeout <= 0 else None)
 
     def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
         if self.clock.paused:
-            return self._select_paused(timeout)
+            self.hold_run()
+            return super().select(0 if timeout is not None and timeout <= 0 else None)
         if timeout is not None and timeout <= 0:
             self._passed += 1
             if self._passed < self.PATIENCE:
@@ -388,11 +395,16 @@ def start_thread(work: Callable[[], T], loop: asyncio.AbstractEventLoop | None =
     At its end, a process waits for the threads of asyncio's own executor, forever if one never returns.
     """
     done: Future[T] = Future()
-    threading.Thread(target=_work, args=(work, done), name="jacaros work", daemon=True).start()
-    return asyncio.wrap_future(done, loop=loop)
+    future = asyncio.wrap_future(done, loop=loop)
+    thread = threading.Thread(target=_work, args=(work, done), name="jacaros work", daemon=True)
+    try:
+        thread.start()
+    except RuntimeError:  # a browser has no threads, and a busy machine none left
+        (loop or asyncio.get_running_loop()).call_soon(_work, work, done)
+    return future
 
 
-class _Loop(asyncio.BaseEventLoop):
+class Loop(asyncio.BaseEventLoop):
     """The part of a loop that runs work of ``asyncio.to_thread`` in daemon threads."""
 
     def run_in_executor(  # type: ignore[override]  # the typed signature differs between Python versions
@@ -404,12 +416,12 @@ class _Loop(asyncio.BaseEventLoop):
         return super().run_in_executor(executor, func, *args)
 
 
-class VirtualEventLoop(_Loop, asyncio.SelectorEventLoop):
+class VirtualEventLoop(Loop, asyncio.SelectorEventLoop):
     """An asyncio loop that waits on a virtual clock: ``asyncio.sleep`` and timeouts take no real time."""
 
     def __init__(self, clock: VirtualClock) -> None:
         self._virtual_clock = clock
-        self.virtual_selector = _VirtualSelector(clock)
+        self.virtual_selector = VirtualSelector(clock)
         super().__init__(self.virtual_selector)
         self.virtual_selector.ready = self._ready  # type: ignore[attr-defined]
         self._wakes = sys.platform == "win32" and threading.current_thread() is threading.main_thread()
@@ -453,7 +465,7 @@ class VirtualEventLoop(_Loop, asyncio.SelectorEventLoop):
 _UsualLoop: Any = getattr(asyncio, "ProactorEventLoop", asyncio.SelectorEventLoop)  # the former on Windows
 
 
-class _RealEventLoop(_Loop, _UsualLoop):  # type: ignore[misc]
+class _RealEventLoop(Loop, _UsualLoop):  # type: ignore[misc]
     """The loop of asyncio, with daemon threads."""
 
 

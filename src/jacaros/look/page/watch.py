@@ -82,8 +82,8 @@ class Watch:
             watcher.world(drawing)
 
     def _look(self) -> None:
-        # On the virtual clock a timer costs as much as the rest of a frame.
-        follows = self.clock.virtual and self._scene is not None and self._scene.follow(self._look_if_due)
+        # As fast as possible, a timer costs as much as the rest of a frame.
+        follows = not self.clock.speed and self._scene is not None and self._scene.follow(self._look_if_due)
         self._timer = self.clock.call_later(REST if follows else self._period, self._look)
         self._look_if_due()
 
@@ -142,7 +142,7 @@ def watch_of(mas: System, watchers: list[Watcher], live: bool = False) -> Watch:
         watchers: receive the records.
         live: whether a live page is among the watchers.
     """
-    period = LIVE_PERIOD if live and not mas.clock.virtual else PERIOD
+    period = LIVE_PERIOD if live and mas.clock.speed else PERIOD
     return Watch(mas.clock, watchers, _scene_of(mas), mas.history(), period)
 
 

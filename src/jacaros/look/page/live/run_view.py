@@ -1,24 +1,18 @@
-"""The live pages of a running system: records, commands and server."""
+"""The server of the live pages of a running system, from its start to its end."""
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
-from jacaros.agents.language.offers import OPERATOR, USER
+from jacaros.agents.language.offers import OPERATOR
 from jacaros.look.page.live.access import Access
-from jacaros.look.page.live.agent_commands import FOR_OBSERVERS, FOR_OPERATORS, FOR_USERS
-from jacaros.look.page.live.commands import Commands, artifact_commands, debug_commands, world_commands
-from jacaros.look.page.live.live_view import LiveView
 from jacaros.look.page.live.server import LiveServer, bound_socket
+from jacaros.look.page.live.shown_run import ShownRun
 from jacaros.look.page.watch import Watch, watch_of
-from jacaros.look.records import records
-from jacaros.robots.world import World
 from jacaros.runtime.clock import outside_run
 from jacaros.runtime.mas.embedding.mas import Mas
 from jacaros.runtime.mas.system import System
-from jacaros.serving.callers import Caller
-from jacaros.serving.service import service_of
 
 FIRST_VISIT = 5.0
 """Seconds that the end of a run waits for an opened browser that has not shown the run yet."""
@@ -35,8 +29,7 @@ class RunView:
         address: address of this machine; only this machine reaches the loopback address.
         port: port; 0 for a free one.
         token: token in the path; None for a random one.
-        role: what pages may do: an ``observer`` only looks, a ``user`` also gives goals that agents offer, and answers
-            their questions; an ``operator`` commands everything.
+        role: what pages may do; see `ShownRun`.
         framed: whether other pages may show the page in a frame.
 
     Attributes:
@@ -59,18 +52,14 @@ class RunView:
     ) -> None:
         self._system = system
         self.awaited = False
-        self._caller = Caller(role, "page", frozenset({role}))
-        service = service_of(system)
-        self.commands = Commands(lambda what: service.note(self._caller, what))
-        open_session = lambda: service.open(self._caller)  # noqa: E731
-        self.watcher = LiveView(system.deployment.name, self.commands, open_session=open_session)
+        self._shown = ShownRun(system, role)
+        self.watcher = self._shown.watcher
         access = Access(address, token, framed)
         self._server = LiveServer(bound_socket(address, port), access, self.watcher)
         self.address = self._server.address
         self._open_address = self.address.removesuffix(f"{access.token}/")
         """Without the token, which other members of a fleet do not get."""
         self._serving: asyncio.Task[None] | None = None
-        self._end_debug: Callable[[], None] = lambda: None
 
     def begin(self, watch: Watch) -> None:
         """Serve until the run ends or `close` is called.
@@ -78,21 +67,11 @@ class RunView:
         Args:
             watch: watch of the run, with `watcher` among its watchers.
         """
-        system = self._system
-        self.commands.add(FOR_OBSERVERS)
-        if self._caller.has((USER,)):
-            self.commands.add(FOR_USERS)
-        if self._caller.has((OPERATOR,)):
-            self.commands.add(FOR_OPERATORS)
-            self.commands.add(artifact_commands(system), changes=True)
-            self.commands.add(debug_commands(system.debugger))
-            # The world may be created later, when an agent first needs a robot.
-            system.ros.watch_world(lambda world: self._let_change(world, watch.look))
-        self._show_debugger()
+        self._shown.begin(watch)
         self._show_page(self._open_address)
         with outside_run():  # a paused run must be able to continue
             self._serving = asyncio.create_task(self._serve())
-        system.close_last(self.close)  # pages show the end of the run
+        self._system.close_last(self.close)  # pages show the end of the run
         # A task that is cancelled before its first step executes no `finally`.
         self._serving.add_done_callback(lambda _: self._server.release())
 
@@ -100,18 +79,9 @@ class RunView:
         if self._system.fleet is not None:
             self._system.fleet.show_page(address)
 
-    def _let_change(self, world: World, look: Callable[[], None]) -> None:
-        self.commands.add(world_commands(self._system, world, look), changes=True)
-        self.watcher.commands_changed()
-
-    def _show_debugger(self) -> None:
-        debugger, history = self._system.debugger, self._system.history()
-        history.record(records.DebugRecord(**debugger.state.data()))
-        self._end_debug = debugger.listen(lambda state: history.record(records.DebugRecord(**state.data())))
-
     async def close(self) -> None:
         """Send waiting records, and disconnect the pages."""
-        self._end_debug()
+        self._shown.end()
         self._show_page("")
         if self._serving is not None:
             self._serving.cancel()
@@ -148,7 +118,7 @@ async def view(
         address: address of this machine; by default one that only this machine can reach.
         port: port; a free one by default.
         token: token in the path, at least 16 letters and digits; random by default.
-        role: what pages may do: ``observer``, ``user`` or ``operator``; see `RunView`.
+        role: what pages may do: ``observer``, ``user`` or ``operator``; see `ShownRun`.
 
     Returns:
         The address of the page.

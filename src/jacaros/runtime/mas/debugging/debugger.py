@@ -228,8 +228,7 @@ class Debugger:
     @property
     def speed(self) -> float:
         """Seconds of the run's clock per second of real time; 0.0 for the virtual clock."""
-        clock = self._system.clock
-        return clock.speed if isinstance(clock, WallClock) else 0.0 if clock.virtual else 1.0
+        return self._system.clock.speed
 
     @speed.setter
     def speed(self, factor: float) -> None:
@@ -237,14 +236,13 @@ class Debugger:
             raise UsageError("the speed can be set only with --clock real and --ros memory")
         if not 0.0 < factor < float("inf"):
             raise UsageError(f"expected a speed greater than 0, found {factor}")
-        assert isinstance(self._system.clock, WallClock)
         self._system.clock.speed = factor
         self._change(self._state)
 
     @property
     def has_speed(self) -> bool:
         """Whether the speed can be changed: in real time, with the embedded world or none."""
-        return isinstance(self._system.clock, WallClock) and self._system.options.ros == "memory"
+        return self._system.clock.has_speed and self._system.options.ros == "memory"
 
     # ---- breakpoints
 
