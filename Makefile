@@ -12,6 +12,7 @@
 # make reference     reference pages and pictures generated from the code
 # make vsix          the VS Code extension, editors/vscode/dist/jacaros.vsix; needs Node.js 18 or later with npm
 # make site          the documentation as a website in build/site
+# make live          the pages on which programs run in a browser, in build/live; needs npm's registry
 # make release       wheel, source distribution and bill of materials (CycloneDX) in dist/, the same on every machine
 #
 # PYTHON=python3.12 make demo   use another interpreter (3.11 or newer)
@@ -20,7 +21,7 @@
 VENV := .venv
 PYTHON ?= $(shell tools/find_python.sh)
 
-.PHONY: demo test test-all quick coverage mutants reference experiment bench site release vsix clean
+.PHONY: demo test test-all quick coverage mutants reference experiment bench live site release vsix clean
 
 demo: $(VENV)/.installed
 	$(VENV)/bin/python tools/demo.py
@@ -52,6 +53,9 @@ experiment: $(VENV)/.installed-dev
 
 site: $(VENV)/.installed-dev
 	$(VENV)/bin/python tools/make_site.py
+
+live: $(VENV)/.installed-dev
+	$(VENV)/bin/python tools/build_live.py build/live
 
 release: $(VENV)/.installed-dev
 	rm -rf dist
