@@ -65,6 +65,7 @@ RUNS: dict[str, list[list[str]]] = {
         ["run", "a.asl", "--fleet", "lab", "--fleet-allow", EVIL],
     ],
     "demo": [["demo", EVIL]],
+    "port": [["port", "Evil.java"], ["port", EVIL], ["port", "Evil.java", "-o", f"{EVIL}/x.py"]],
     "new": [["new", EVIL], ["new", "robot", "--template", EVIL]],
     "mcp": [["mcp", EVIL]],
     "dap": [["dap", EVIL]],
@@ -103,6 +104,7 @@ def outputs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
         "tests.asl": TESTS,
         "w.yaml": WORLD,
         "m.yaml": MAPPING,
+        "Evil.java": f'class Evil extends Artifact {{ {EVIL}',
         "damaged.jsonl": f'{{"kind": "world", "version": 2, "world": {{"name": "{JSON_EVIL}"}}}}\n{EVIL}\n',
     }
     for name, text in files.items():

@@ -114,9 +114,9 @@ def member(name: str, node: Node, scope: Scope) -> Py:
     for owner in (scope.of, *(each for each in scope.of.file.classes.values() if each is not scope.of)):
         if found := owner.members.get(name):
             if found.is_static:
-                return Py(
-                    name if scope.in_class_body and owner is scope.of else f"{owner.name}.{name}", found.type
-                )
+                python = owner.attribute(name)
+                is_near = scope.in_class_body and owner is scope.of
+                return Py(python if is_near else f"{owner.name}.{python}", found.type)
             if (
                 owner is scope.of
                 and not (scope.method and scope.method.is_static)

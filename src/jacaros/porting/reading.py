@@ -39,11 +39,11 @@ class JavaFile:
         """Return the lines of a node, without their common indentation."""
         first, last = node.start_point[0], node.end_point[0]
         if first == last:
-            return [source(node)]
-        lines = [self.lines[first][node.start_point[1] :].strip(), *self.lines[first + 1 : last + 1]]
+            return [source(node).rstrip()]
+        lines = [source(node).splitlines()[0].strip(), *self.lines[first + 1 : last + 1]]
         indents = [len(line) - len(line.lstrip()) for line in lines[1:] if line.strip()]
         cut = min([self._indent(first), *indents])
-        return [lines[0], *(line.expandtabs(4)[cut:].rstrip() for line in lines[1:])]
+        return [lines[0], *(line[cut:].rstrip() for line in lines[1:])]
 
     def _indent(self, line: int) -> int:
         text = self.lines[line]
@@ -64,11 +64,12 @@ def read(name: str, text: str) -> JavaFile:
     import tree_sitter_java
     from tree_sitter import Language, Parser
 
+    text = text.expandtabs(4)
     root = Parser(Language(tree_sitter_java.language())).parse(text.encode()).root_node
     if root.has_error:
         wrong = next(node for node in every(root) if node.is_error or node.is_missing)
         raise NotPortable(f"{name}:{line_of(wrong)}: error: this is not valid Java")
-    return JavaFile(name, root, text.expandtabs(4).splitlines())
+    return JavaFile(name, root, text.splitlines())
 
 
 def source(node: Node) -> str:

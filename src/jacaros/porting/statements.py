@@ -95,11 +95,14 @@ class Body:
         line = line_of(node)
         if self._is_of_window(node):
             self.windows.append(node)
-            return [f"# Java, line {line}, a window: {code[0]}", *(f"#     {each}" for each in code[1:])]
+            return [
+                f"# Java, line {line}, a window: {code[0]}",
+                *(f"#     {each}".rstrip() for each in code[1:]),
+            ]
         self.left.append(node)
         return [
             f"# Java, line {line}: {code[0]}",
-            *(f"#     {each}" for each in code[1:]),
+            *(f"#     {each}".rstrip() for each in code[1:]),
             self.failure(line),
         ]
 
@@ -416,9 +419,8 @@ class Body:
         yield "try:"
         yield from (f"{INDENT}{line}" for line in body)
         caught = [each for each in children(node) if each.type == "catch_clause"]
-        fails = any("self.fail(" in line for line in body)
-        if caught and fails and not any("await self." in line for line in body):
-            yield "except OperationFailed:"
+        if caught and (failure := self._kept_failure(body)):
+            yield f"except {failure}:"
             yield f"{INDENT}raise"
         if caught:
             yield from self._catch(caught[0], len(caught) > 1, node)
@@ -426,6 +428,21 @@ class Body:
             if each.type == "finally_clause":
                 yield "finally:"
                 yield from self._indented(children(each)[0])
+
+    def _kept_failure(self, body: list[str]) -> str:
+        """Return the exception that a handler must not catch: a failure of the operation is not an exception in Java.
+
+        A failed link or creation is one.
+        """
+        code = "\n".join(body)
+        if not self.scope.of.is_artifact:
+            return "NotImplementedError" if "NotImplementedError" in code else ""
+        calls_own = any(f"self.{each.name}(" in code for each in self.scope.of.methods)
+        can_fail = any(
+            f"self.{name}(" in code for name in ("call_linked", "workspace.make_artifact", "workspace.lookup")
+        )
+        kept = "not_ported" in code or (not can_fail and ("self.fail(" in code or calls_own))
+        return "OperationFailed" if kept else ""
 
     def _catch(self, clause: Node, has_more: bool, node: Node) -> Iterator[str]:
         """Translate the first handler; others are for further kinds of exceptions of Java."""

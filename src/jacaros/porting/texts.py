@@ -123,7 +123,7 @@ def _term(words: list[re.Match[str]], at: int, values: list[str]) -> tuple[Term,
         return Term(values[int(hole.strip("\x00"))], is_value=True), at + 1
     if number or string:
         return Term(number or string, is_value=True), at + 1
-    if other or not name:
+    if other or not name or name.startswith("~"):  # no artifact has a negated property
         raise ValueError(other)
     if at + 1 == len(words) or words[at + 1][5] != "(":
         return Term(name), at + 1

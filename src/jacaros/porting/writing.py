@@ -26,6 +26,8 @@ _IMPORTED = {
     "enum": ("StrEnum",),
     "typing": ("Any", "ClassVar"),
 }
+_WIDTH = 88
+"""Length from which ruff and black wrap a line."""
 _MODULES = ("math", "random", "re", "sys")
 
 
@@ -46,11 +48,10 @@ class Writer:
     def file(self) -> str:
         """Return the Python file."""
         every_class = list(self._model.classes.values())
-        parts = [
-            self._class(each)
-            for each in sorted(every_class, key=lambda each: each.is_artifact)
-            if each.node.type != "interface_declaration"
-        ]
+        shown = [each for each in every_class if each.node.type != "interface_declaration"]
+        # What is not ported comes last: a comment there belongs to no class.
+        shown.sort(key=lambda each: (each.name not in self._model.ported, each.is_artifact))
+        parts = [self._class(each) for each in shown]
         code = "\n\n\n".join("\n".join(part) for part in parts)
         if "functor_of(" in code:
             code = f"{environments.FUNCTOR}\n\n\n{code}"
@@ -73,7 +74,7 @@ class Writer:
             self.windows.append(of.node)
             return [f"{about}, a window, is left out"]
         self.left.append(of.node)
-        return [about, *(f"#     {line}" for line in self._model.java.code(of.node))]
+        return [about, *(f"#     {line}".rstrip() for line in self._model.java.code(of.node))]
 
     def _enum(self, of: JavaClass) -> list[str]:
         names = [
@@ -126,12 +127,12 @@ class Writer:
             self.left.append(member.value)
             yield from self._comment(member.value)
             initial = "None"
-        yield f"{member.name}{hint} = {initial}"
+        yield f"{of.attribute(member.name)}{hint} = {initial}"
 
     def _comment(self, node: Node) -> Iterator[str]:
         first, *more = self._model.java.code(node)
         yield f"# Java, line {line_of(node)}: {first}"
-        yield from (f"#     {line}" for line in more)
+        yield from (f"#     {line}".rstrip() for line in more)
 
     def _fields(self, body: Body) -> Iterator[str]:
         """Give the fields their initial values."""
@@ -178,6 +179,7 @@ class Writer:
         head = [] if number == 0 else ["@initializer"]
         name = name if number == 0 else f"{INIT}_{len(scope.method.parameters) if scope.method else 0}"
         word = "async def" if method and method.pauses else "def"
+        lines = _without_pass(lines)
         return [*head, f"{word} {name}({', '.join(parameters)}) -> None:", *_indented(lines or ["pass"])]
 
     def _method(self, method: Method, of: JavaClass) -> list[str]:
@@ -243,6 +245,12 @@ def _is_left_out(method: Method, of: JavaClass) -> bool:
     )
 
 
+def _without_pass(lines: list[str]) -> list[str]:
+    """Remove a ``pass`` beside other statements."""
+    done = [line for line in lines if line != "pass"]
+    return done if any(not line.startswith("#") for line in done) else lines
+
+
 def _document(node: Node, name: str = "") -> list[str]:
     text = documentation(node)
     if not text and not name:
@@ -282,7 +290,9 @@ def _imports(code: str) -> str:
     for module, names in _IMPORTED.items():
         used = [name for name in names if re.search(rf"(?<![\w.\"']){name}\b(?!\")", code)]
         if used:
-            blocks[module] = f"from {module} import {', '.join(used)}"
+            line = f"from {module} import {', '.join(used)}"
+            wrapped = "".join(f"{INDENT}{name},\n" for name in used)
+            blocks[module] = line if len(line) <= _WIDTH else f"from {module} import (\n{wrapped})"
     standard = [*lines, *(blocks[module] for module in ("enum", "typing") if module in blocks)]
     own = [blocks["jacaros.artifacts"]] if "jacaros.artifacts" in blocks else []
     return "\n".join(

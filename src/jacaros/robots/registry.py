@@ -94,7 +94,7 @@ def type_finder(project: ProjectModules | Path | str | None) -> Callable[[str], 
             for module in near:
                 own.require_seen(module, name.rpartition(".")[2])
             if (source := _java_source(name, own.folders)) is not None:
-                raise UnknownArtifactType(name, (), _in_java(name, source)) from None
+                raise _in_java(name, source, own.folders[0]) from None
             if not by_path and _is_installed(name):
                 raise NotImported(f"{name} is not imported") from None
             raise
@@ -181,13 +181,15 @@ def _java_source(name: str, folders: Iterable[Path]) -> Path | None:
     return next(filter(Path.is_file, paths), None)
 
 
-def _in_java(name: str, source: Path) -> str:
+def _in_java(name: str, source: Path, folder: Path) -> UnknownArtifactType:
+    """Return the error for a type in Java, with the command that ports it into the folder of the project."""
     path, _, last = name.rpartition(".")
-    file = f"{path.replace('.', '/') or ARTIFACTS}.py"
-    return (
-        f"artifact type `{name}` is in Java ({shown_from(Path.cwd(), source)}), which JaCaROS does not run; port it to "
-        f"`class {last}(Artifact)` in {file}, as docs/how-to/come_from_cartago.md shows"
-    )
+    own = f"{ARTIFACTS}/{last.lower()}.py"
+    if (folder / f"{ARTIFACTS}.py").exists():  # a folder of that name would be ignored
+        own = f"{path.replace('.', '/') or last.lower()}.py"
+    java, python = (shown_from(Path.cwd(), each) for each in (source, folder / own))
+    what = f"artifact type `{name}` is in Java ({java}), which JaCaROS does not run"
+    return UnknownArtifactType(name, (), what, f"jacaros port {java} -o {python}")
 
 
 def _is_installed(name: str) -> bool:

@@ -36,13 +36,17 @@ class UnknownArtifactType(WorkspaceError):
         type_name: the unknown type.
         candidates: names of known types, for a suggestion.
         text: a more specific message.
+        help: what to do, if the message does not say it.
 
     Attributes:
         is_explained: the message says what to do.
     """
 
-    def __init__(self, type_name: str, candidates: Iterable[str] = (), text: str = "") -> None:
+    def __init__(
+        self, type_name: str, candidates: Iterable[str] = (), text: str = "", help: str | None = None
+    ) -> None:
         self.type_name = type_name
+        self.help = help
         meant = aside(type_name, candidates)
         self.is_explained = bool(text or meant)
         super().__init__((text or f"unknown artifact type `{type_name}`") + meant)

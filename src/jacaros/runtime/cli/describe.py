@@ -92,6 +92,8 @@ def _find(name: str, folder: Path, unseen: set[Path] | None) -> type[Artifact]:
     try:
         return type_finder(ProjectModules(folder, unseen=unseen))(name)
     except UnknownArtifactType as unknown:
+        if unknown.help:
+            raise usage_error(str(unknown), unknown.help) from unknown
         raise UsageError(str(unknown)) from unknown
 
 

@@ -43,6 +43,7 @@ COMMANDS = {
         "jacaros.runtime.cli.programs:check",
         "Report problems in programs, projects and mapping files.",
     ),
+    "port": ("jacaros.runtime.cli.port", "Port a Java artifact or environment to Python."),
     "fmt": ("jacaros.runtime.cli.programs:fmt", "Format programs in one style."),
     "view": ("jacaros.runtime.cli.recordings:view", "Show a recorded run on a page in the browser."),
     "why": (

@@ -221,8 +221,8 @@ def types_of(artifacts: Sequence[ArtifactSpec], find_type: "FindType") -> "dict[
             continue
         except Exception as error:
             message = str(error) or type(error).__name__
-            explained = isinstance(error, UnknownArtifactType) and error.is_explained
-            help = None if explained else _where(artifact.type_name)
+            unknown = error if isinstance(error, UnknownArtifactType) else None
+            help = unknown.help if unknown and unknown.is_explained else _where(artifact.type_name)
             wrong.append(Diagnostic("error", message, artifact.type_span or artifact.span, help))
     if wrong:
         raise ProjectError(wrong)

@@ -12,6 +12,16 @@ PROJECT = """mas room {
     workspace hall { artifact heater: TYPE(30) }
 }
 """
+JAVA = """package devices;
+
+import cartago.*;
+
+public class Heater extends Artifact {
+    void init(int start) {
+        defineObsProperty("temperature", start);
+    }
+}
+"""
 PORTED = """
 from jacaros.artifacts import Artifact
 
@@ -30,7 +40,7 @@ def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "ann.asl").write_text("+temperature(T) <- .print(T); .stopMAS.\n")
     (tmp_path / "src/env/devices").mkdir(parents=True)
-    (tmp_path / "src/env/devices/Heater.java").write_text("package devices; class Heater {}")
+    (tmp_path / "src/env/devices/Heater.java").write_text(JAVA)
     return tmp_path
 
 
@@ -48,13 +58,20 @@ def outcome(room: Path, capsys: pytest.CaptureFixture[str]) -> Outcome:
 
 
 @pytest.mark.parametrize("command", ["check", "run"])
-def test_an_artifact_in_java_is_named_with_the_page_to_read(command: str, outcome: Outcome) -> None:
+def test_an_artifact_in_java_is_named_with_the_command_that_ports_it(command: str, outcome: Outcome) -> None:
     code, told = outcome("devices.Heater", command)
     assert code == 1
     assert "artifact type `devices.Heater` is in Java (src/env/devices/Heater.java)" in told
-    page = "docs/how-to/come_from_cartago.md"
-    assert f"port it to `class Heater(Artifact)` in devices.py, as {page} shows" in told
+    assert "= help: jacaros port src/env/devices/Heater.java -o artifacts/heater.py\n" in told
     assert "did you mean" not in told
+
+
+def test_the_command_of_the_help_makes_the_project_run(outcome: Outcome) -> None:
+    help = outcome("devices.Heater")[1].partition("= help: jacaros ")[2].partition("\n")[0]
+    assert call(help.split()) == 0
+    code, told = outcome("devices.Heater", "run")
+    assert code == 0
+    assert "[ann] 30" in told
 
 
 def test_the_port_turns_no_warning_into_an_error(room: Path, outcome: Outcome) -> None:

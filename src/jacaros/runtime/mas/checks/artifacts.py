@@ -252,7 +252,9 @@ def unknown_types(
             find_type(each.name)
         except UnknownArtifactType as unknown:
             if not is_wrong_mapping(each.name, folders):
-                yield Diagnostic("warning", str(unknown), each.term.span, code="unknown-artifact-type")
+                yield Diagnostic(
+                    "warning", str(unknown), each.term.span, unknown.help, code="unknown-artifact-type"
+                )
         except Exception:
             # The module has an error, which a run reports.
             continue

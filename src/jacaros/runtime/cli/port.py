@@ -1,0 +1,87 @@
+"""``jacaros port FILE.java``."""
+
+from pathlib import Path
+
+import click
+
+from jacaros.runtime.cli.options import PATH, option
+from jacaros.runtime.cli.outputs import write_output
+from jacaros.runtime.cli.usage import counted, examples, not_found, usage_error
+from jacaros.runtime.errors import JacarosError
+from jacaros.runtime.files.texts import file_text, is_file
+
+_MOST_LINES = 10
+"""Number of lines that a summary names."""
+
+
+@click.command(
+    "port",
+    epilog=examples(
+        "jacaros port src/env/devices/HVAC.java",
+        "jacaros port RoomEnv.java -o room.py",
+    ),
+)
+@click.argument("path", metavar="FILE.java", type=PATH)
+@option(
+    "-o --output FILE.py",
+    "Python file to write; it must not exist (default: print it).",
+    PATH,
+    name="output",
+)
+def command(path: Path, output: Path | None) -> None:
+    """Write a first Python version of the artifacts in FILE.java, or of an environment of Jason.
+
+    A statement without translation becomes a comment with its line in Java, and the operation fails there.
+    """  # fmt: skip
+    if output is not None:
+        _check(output)
+    text = _read(path)
+    from jacaros.porting import port  # here: it imports artifacts
+
+    ported = port(path.name, text)
+    if output is None:
+        click.echo(ported.text, nl=False)
+    else:
+        try:
+            output.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise usage_error(
+                f"cannot make `{output.parent}`: {error.strerror}", "name another folder"
+            ) from error
+        write_output(output, ported.text)
+    done = ported.lines - len(ported.left) - len(ported.windows)
+    names = ", ".join(ported.artifacts)
+    click.echo(f"ported {names}: {done} of {counted(ported.lines, 'line')}", err=True)
+    if ported.left:
+        click.echo(f"left to you: {_listed(ported.left)}", err=True)
+    if ported.windows:
+        click.echo(f"left out, windows: {_listed(ported.windows)}", err=True)
+
+
+def _check(output: Path) -> None:
+    if output.exists():
+        raise usage_error(f"`{output}` already exists", "name another file, or delete it")
+
+
+def _read(path: Path) -> str:
+    if path.suffix != ".java":
+        raise usage_error(f"unsupported file type: `{path}`", "expected .java")
+    if not is_file(path):
+        raise not_found(path, (".java",))
+    try:
+        return file_text(path)
+    except (OSError, UnicodeDecodeError) as error:
+        raise JacarosError(f"cannot read `{path}`: {error}") from error
+
+
+def _listed(lines: list[int]) -> str:
+    """Return line numbers as ranges: ``lines 3, 7-9``."""
+    ranges: list[list[int]] = []
+    for line in lines:
+        if ranges and line == ranges[-1][-1] + 1:
+            ranges[-1][1:] = [line]
+        else:
+            ranges.append([line])
+    shown = ["-".join(map(str, each)) for each in ranges[:_MOST_LINES]]
+    more = ["..."] if len(ranges) > _MOST_LINES else []
+    return f"{'line' if len(lines) == 1 else 'lines'} {', '.join([*shown, *more])}"
