@@ -79,9 +79,12 @@ missing fleet "$jacaros" run hello.asl --fleet lab
 missing fleet "$jacaros" fleet list lab
 missing serve "$jacaros" run hello.asl --serve 0 --for 1
 missing mcp "$jacaros" mcp hello.asl
+printf 'class A extends Artifact { @OPERATION void hello() { } }' >A.java
+missing java "$jacaros" port A.java
 
-install "$wheel[behaviour-trees,console,fleet,foxglove,maps,mcp,rosbridge,serve]"
+install "$wheel[behaviour-trees,console,fleet,foxglove,java,maps,mcp,rosbridge,serve]"
 "$jacaros" world show house --output house.svg
+"$jacaros" port A.java | grep -q "class A(Artifact):"
 "$jacaros" run examples/07_shared_robot/shared_robot.jcm --clock fast --ground-truth truth.jsonl >shared_robot.log
 "$scratch/venv/bin/python" examples/07_shared_robot/check.py truth.jsonl | grep -q '^passed$'
 printf 'MAS two {\n  agents: hello at "left"; hello2 hello at "right";\n}\n' >two.mas2j

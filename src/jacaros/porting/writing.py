@@ -274,13 +274,32 @@ def _rules(code: str) -> str:
     """Return the line that lets ruff accept loops and conditions written as Java does; empty if there are none."""
     found = set()
     for node in ast.walk(ast.parse(code)):
-        if isinstance(node, ast.For) and any(isinstance(each, ast.AugAssign) for each in node.body):
-            found.add("SIM113")
         if isinstance(node, ast.If) and not node.orelse and len(node.body) == 1:
             inner = node.body[0]
             if isinstance(inner, ast.If) and not inner.orelse:
                 found.add("SIM102")
+        blocks = [getattr(node, name, []) for name in ("body", "orelse", "finalbody")]
+        if any(isinstance(block, list) and _counts_beside(block) for block in blocks):
+            found.add("SIM113")
     return f"\n# ruff: noqa: {', '.join(sorted(found))} - as in Java\n" if found else ""
+
+
+def _counts_beside(block: list[ast.stmt]) -> bool:
+    """Return whether a loop has a counter that starts at 0 in the same block."""
+    zeros: set[str] = set()
+    for each in block:
+        match each:
+            case ast.Assign(targets=[ast.Name(id=name)], value=ast.Constant(value=0)):
+                zeros.add(name)
+            case ast.For(body=body) if not any(isinstance(inner, ast.Continue) for inner in ast.walk(each)):
+                counted = {
+                    step.target.id
+                    for step in body
+                    if isinstance(step, ast.AugAssign) and isinstance(step.target, ast.Name)
+                }
+                if counted & zeros:
+                    return True
+    return False
 
 
 def _imports(code: str) -> str:
