@@ -13,6 +13,7 @@ LANGUAGES = {
     "console",
     "diff",
     "ebnf",
+    "java",
     "jcm",
     "json",
     "mas2j",
