@@ -15,6 +15,7 @@ from jacaros.porting.types import (
     BUILDERS,
     DOUBLE,
     INT,
+    LOCKS,
     LOGGER,
     OUT,
     PROPERTY,
@@ -107,7 +108,8 @@ def _own(node: Node, name: str, arguments: list[Node], scope: Scope, value: Tran
         raise Unported(node)
     if scope.of.is_environment and (found := percepts.call(node, name, arguments, scope, value)) is not None:
         return found
-    if is_super and name == "init" and scope.of.base not in scope.of.file.classes:
+    # An artifact has no other `init` than its own; that of a `GUIArtifact` opens its window.
+    if name == "init" and scope.of.base not in scope.of.file.classes:
         return Py("", VOID)
     return _of_artifact(node, name, arguments, scope, value)
 
@@ -227,6 +229,8 @@ def _identity(thing: Py, name: str, values: list[Py], scope: Scope) -> Py | None
         return Py(f"{thing.text}.value", thing.type.element())
     if (kind == LOGGER and name in _LOGGED) and values and scope.of.is_artifact:
         return logged(values[0])
+    if kind in LOCKS and name in ("lock", "unlock"):
+        return Py("", VOID)  # an operation has its artifact for itself
     if kind == "Entry" and name in ("getKey", "getValue"):
         is_key = name == "getKey"
         return Py(f"{thing.text}_{'key' if is_key else 'value'}", thing.type.element(0 if is_key else -1))

@@ -34,6 +34,7 @@ from jacaros.porting.types import (
     INT,
     INTEGERS,
     LISTS,
+    LOCKS,
     MAPS,
     PROPERTY,
     SETS,
@@ -346,7 +347,7 @@ def _creation(node: Node, scope: Scope) -> Py:
         made = f"Atom({first.text})" if kind.name == "Atom" else first.text
     elif kind.name == "OpFeedbackParam":
         made = "Out()"
-    elif kind.name == "Object" and not arguments:
+    elif (kind.name == "Object" or kind.name in LOCKS) and not arguments:
         made = "object()"
     elif kind.name in scope.of.file.ported:
         owner = scope.of.file.classes[kind.name]

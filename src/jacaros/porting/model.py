@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import keyword
-from collections.abc import Iterable
+import re
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from dataclasses import field as attribute
 from typing import TYPE_CHECKING
@@ -86,7 +87,9 @@ TAKEN = frozenset(
 """Names that the written code uses, or that linters reject."""
 _PAUSING = {"await", "await_time", "delay", "execLinkedOp", "makeArtifact"}
 _WINDOWS = ("java.awt", "javax.swing")
-_OF_WINDOWS = {"GridWorldView", "JFrame", "JPanel", "JDialog", "JComponent", "Canvas", "Frame", "Panel"}
+_DATA = frozenset({"Point", "Dimension", "Rectangle", "Color"})
+"""Classes of AWT that hold data."""
+_OF_WINDOWS = re.compile(r"GridWorldView|J[A-Z][a-z]\w+|Canvas|Frame|Panel")
 ROLES = {"OPERATION": "operation", "INTERNAL_OPERATION": "internal_operation", "LINK": "link"}
 INIT = "init"
 _SPECIAL = {"toString": "__str__", "equals": "__eq__", "hashCode": "__hash__"}
@@ -142,11 +145,17 @@ class Method:
 
 @dataclass(slots=True)
 class JavaClass:
-    """A class of the file."""
+    """A class of the file, or of a file beside it.
+
+    Attributes:
+        java: its file.
+        file: all classes that it may use.
+    """
 
     name: str
     node: Node
     base: str
+    java: JavaFile
     file: FileModel
     members: dict[str, Member] = attribute(default_factory=dict)
     methods: list[Method] = attribute(default_factory=list)
@@ -198,7 +207,7 @@ class JavaClass:
 
 @dataclass(slots=True)
 class FileModel:
-    """All classes of a file."""
+    """All classes of a file, and those that it uses of the files beside it."""
 
     java: JavaFile
     classes: dict[str, JavaClass] = attribute(default_factory=dict)
@@ -207,7 +216,9 @@ class FileModel:
     def is_window(self, name: str) -> bool:
         """Return whether a type shows a window."""
         known = self.classes.get(name)
-        return name in self.windows or name in _OF_WINDOWS or (known is not None and known.is_window)
+        if known is not None:
+            return known.is_window
+        return name in self.windows or _OF_WINDOWS.fullmatch(name) is not None
 
     @property
     def ported(self) -> frozenset[str]:
@@ -217,25 +228,49 @@ class FileModel:
         )
 
 
-def model_of(java: JavaFile) -> FileModel:
-    """Read the classes of a file."""
+Beside = Callable[[str], JavaFile | None]
+"""Finds the file of a class beside the file that uses it."""
+
+
+def model_of(java: JavaFile, beside: Beside) -> FileModel:
+    """Read the classes of a file, and those that it uses of the files beside it."""
     model = FileModel(java)
-    for each in every(java.root, "import_declaration"):
-        name = source(children(each)[0])
-        if name.startswith(_WINDOWS):
-            model.windows.add(name.rpartition(".")[2])
-    for node in classes(java.root):
-        model.classes[source(field(node, "name"))] = _class_of(node, model)
+    _add(java, model)
+    asked = set(model.classes)
+    waiting = [java]
+    while waiting:
+        for name in sorted(_named(waiting.pop()) - asked):
+            asked.add(name)
+            other = beside(name)
+            if other is not None and not any(each.is_artifact for each in _add(other, model)):
+                waiting.append(other)
     for found in model.classes.values():
         _find_pauses(found)
     return model
 
 
-def _class_of(node: Node, model: FileModel) -> JavaClass:
+def _named(java: JavaFile) -> set[str]:
+    """Return the names of types in a file."""
+    nodes = (*every(java.root, "type_identifier"), *every(java.root, "identifier"))
+    return {name for node in nodes if (name := source(node))[:1].isupper()}
+
+
+def _add(java: JavaFile, model: FileModel) -> list[JavaClass]:
+    for each in every(java.root, "import_declaration"):
+        name = source(children(each)[0])
+        if name.startswith(_WINDOWS) and name.rpartition(".")[2] not in _DATA:
+            model.windows.add(name.rpartition(".")[2])
+    found = [_class_of(node, java, model) for node in classes(java.root)]
+    if java is model.java or not any(each.is_artifact for each in found):  # an artifact is a port of its own
+        model.classes |= {each.name: each for each in found}
+    return found
+
+
+def _class_of(node: Node, java: JavaFile, model: FileModel) -> JavaClass:
     base = node.child_by_field_name("superclass")
     name = type_of(children(base)[0]).name if base else ""
     outer = node.parent is not None and node.parent.type == "class_body"
-    found = JavaClass(source(field(node, "name")), node, name, model)
+    found = JavaClass(source(field(node, "name")), node, name, java, model)
     found.is_inner = outer and "static" not in modifiers(node)
     if info := marks(node).get("ARTIFACT_INFO"):
         ports = (annotation_text(each, "name") for each in every(info, "annotation") if each is not info)

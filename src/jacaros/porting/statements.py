@@ -18,16 +18,18 @@ from jacaros.porting.types import (
     MAPS,
     PROPERTY,
     SETS,
-    UNKNOWN,
     JavaType,
     default_of,
     type_of,
 )
+from jacaros.porting.windows import only_shows, outermost
 
 if TYPE_CHECKING:
     from tree_sitter import Node
 
 INDENT = "    "
+Place = tuple[str, "Node"]
+"""A file, and a part of it."""
 
 
 class Body:
@@ -40,8 +42,8 @@ class Body:
 
     def __init__(self, scope: Scope) -> None:
         self.scope = scope
-        self.left: list[Node] = []
-        self.windows: list[Node] = []
+        self.left: list[Place] = []
+        self.windows: list[Place] = []
 
     def block(self, node: Node) -> list[str]:
         """Translate a block or a single statement; the lines are not indented."""
@@ -91,15 +93,15 @@ class Body:
         if node.type == "local_variable_declaration":
             for each in node.children_by_field_name("declarator"):
                 self.scope.variables[source(field(each, "name"))] = None
-        code = self.scope.of.file.java.code(node)
+        code = self.scope.of.java.code(node)
         line = line_of(node)
-        if self._is_of_window(node):
-            self.windows.append(node)
+        if only_shows(node, self.scope):
+            self.windows.append((self.scope.of.java.name, node))
             return [
                 f"# Java, line {line}, a window: {code[0]}",
                 *(f"#     {each}".rstrip() for each in code[1:]),
             ]
-        self.left.append(node)
+        self.left.append((self.scope.of.java.name, node))
         return [
             f"# Java, line {line}: {code[0]}",
             *(f"#     {each}".rstrip() for each in code[1:]),
@@ -108,52 +110,11 @@ class Body:
 
     def failure(self, line: int) -> str:
         """Return the statement that fails at run time, for a line that is not ported."""
-        text = f"not ported: line {line} of {self.scope.of.file.java.name}"
+        text = f"not ported: line {line} of {self.scope.of.java.name}"
         method = self.scope.method
         if not self.scope.of.is_artifact or (method and method.is_static):
             return f'raise NotImplementedError("{text}")'
         return f'self.fail("{text}", "not_ported", {line})'
-
-    def _is_of_window(self, node: Node) -> bool:
-        """Return whether a statement only changes a window."""
-        if node.type == "local_variable_declaration":
-            return self.scope.of.file.is_window(type_of(field(node, "type")).name)
-        if node.type != "expression_statement":
-            return False
-        expression = children(node)[0]
-        if expression.type == "assignment_expression":
-            target: Node | None = field(expression, "left")
-        elif expression.type == "method_invocation":
-            target = expression.child_by_field_name("object")
-        else:
-            return False
-        while (
-            target is not None
-            and target.type in ("method_invocation", "field_access")
-            and source(target)[:5] != "this."
-        ):
-            target = target.child_by_field_name("object")
-        name = source(target).removeprefix("this.") if target else ""
-        declared = next(
-            (
-                each
-                for each in every(self._outermost(node), "local_variable_declaration")
-                if any(source(field(d, "name")) == name for d in each.children_by_field_name("declarator"))
-            ),
-            None,
-        )
-        member = self.scope.of.members.get(name)
-        kind = type_of(field(declared, "type")) if declared else member.type if member else UNKNOWN
-        return self.scope.of.file.is_window(kind.name) or self.scope.of.file.is_window(name)
-
-    @staticmethod
-    def _outermost(node: Node) -> Node:
-        while node.parent is not None and node.parent.type not in (
-            "method_declaration",
-            "constructor_declaration",
-        ):
-            node = node.parent
-        return node
 
     # ---- declarations and expressions
 
@@ -192,7 +153,7 @@ class Body:
         return found.text
 
     def _is_changed(self, name: str, node: Node) -> bool:
-        assigned = every(self._outermost(node), "assignment_expression")
+        assigned = every(outermost(node), "assignment_expression")
         return any(source(field(each, "left")) == name for each in assigned)
 
     def _expression(self, node: Node) -> Iterator[str]:

@@ -32,6 +32,7 @@ ARTIFACT_ID = "ArtifactId"
 OUT = "OpFeedbackParam"
 PROPERTY = "ObsProperty"
 LOGGER = "Logger"
+LOCKS = frozenset({"Lock", "ReentrantLock"})
 
 
 @dataclass(frozen=True, slots=True)

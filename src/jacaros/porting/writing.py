@@ -12,7 +12,7 @@ from jacaros.porting.expressions import value
 from jacaros.porting.model import INIT, FileModel, JavaClass, Member, Method, local_name
 from jacaros.porting.reading import children, documentation, field, line_of, modifiers, source
 from jacaros.porting.scope import Py, Scope, Unported
-from jacaros.porting.statements import INDENT, Body
+from jacaros.porting.statements import INDENT, Body, Place
 from jacaros.porting.types import LISTS, LOGGER, MAPS, SETS, JavaType, annotation_of, default_of
 
 if TYPE_CHECKING:
@@ -42,13 +42,13 @@ class Writer:
     def __init__(self, model: FileModel) -> None:
         self._model = model
         self._written: set[str] = set()
-        self.left: list[Node] = []
-        self.windows: list[Node] = []
+        self.left: list[Place] = []
+        self.windows: list[Place] = []
 
     def file(self) -> str:
         """Return the Python file."""
         every_class = list(self._model.classes.values())
-        shown = [each for each in every_class if each.node.type != "interface_declaration"]
+        shown = [each for each in every_class if self._is_shown(each)]
         # What is not ported comes last: a comment there belongs to no class.
         shown.sort(key=lambda each: (each.name not in self._model.ported, each.is_artifact))
         parts = [self._class(each) for each in shown]
@@ -59,6 +59,11 @@ class Writer:
             code = f"{environments.PARTS}\n\n\n{code}"
         code = without_unused(code)
         return f'"""Ported from {self._model.java.name}."""\n{_rules(code)}{_imports(code)}\n\n\n{code}\n'
+
+    def _is_shown(self, of: JavaClass) -> bool:
+        """Return whether a class is in the file; one of a file beside it only if it is ported."""
+        own = of.java is self._model.java or of.name in self._model.ported
+        return own and of.node.type != "interface_declaration"
 
     def _class(self, of: JavaClass) -> list[str]:
         if of.name not in self._model.ported:
@@ -71,10 +76,10 @@ class Writer:
         first, last = line_of(of.node), of.node.end_point[0] + 1
         about = f"# Java, lines {first} to {last}: class {of.name}"
         if of.is_window:
-            self.windows.append(of.node)
+            self.windows.append((of.java.name, of.node))
             return [f"{about}, a window, is left out"]
-        self.left.append(of.node)
-        return [about, *(f"#     {line}".rstrip() for line in self._model.java.code(of.node))]
+        self.left.append((of.java.name, of.node))
+        return [about, *(f"#     {line}".rstrip() for line in of.java.code(of.node))]
 
     def _enum(self, of: JavaClass) -> list[str]:
         names = [
@@ -124,13 +129,14 @@ class Writer:
             )
         except Unported:
             assert member.value is not None
-            self.left.append(member.value)
-            yield from self._comment(member.value)
+            self.left.append((of.java.name, member.value))
+            yield from self._comment(member.value, of)
             initial = "None"
         yield f"{of.attribute(member.name)}{hint} = {initial}"
 
-    def _comment(self, node: Node) -> Iterator[str]:
-        first, *more = self._model.java.code(node)
+    @staticmethod
+    def _comment(node: Node, of: JavaClass) -> Iterator[str]:
+        first, *more = of.java.code(node)
         yield f"# Java, line {line_of(node)}: {first}"
         yield from (f"#     {line}".rstrip() for line in more)
 
@@ -147,8 +153,8 @@ class Writer:
                 initial = value(member.value, body.scope).text if member.value else default_of(member.type)
             except Unported:
                 assert member.value is not None
-                body.left.append(member.value)
-                yield from self._comment(member.value)
+                body.left.append((of.java.name, member.value))
+                yield from self._comment(member.value, of)
                 yield f"{target} = None"
                 yield body.failure(line_of(member.value))
                 continue

@@ -106,7 +106,7 @@ def test_a_window_is_left_out_and_does_not_fail() -> None:
 
 def test_the_lines_that_are_left_are_counted() -> None:
     found = ported("Buffer.java")
-    assert found.left == [100, 101]
+    assert found.left == [("Buffer.java", 100), ("Buffer.java", 101)]
     assert found.artifacts == ["Buffer"]
     assert found.environments == []
     assert 80 < found.lines < 100

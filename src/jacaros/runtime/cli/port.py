@@ -1,5 +1,6 @@
 """``jacaros port FILE.java``."""
 
+from functools import partial
 from pathlib import Path
 
 import click
@@ -31,6 +32,8 @@ _MOST_LINES = 10
 def command(path: Path, output: Path | None) -> None:
     """Write a first Python version of the artifacts in FILE.java, or of an environment of Jason.
 
+    Classes that it uses from other files of its folder are ported, too.
+
     A statement without translation becomes a comment with its line in Java, and the operation fails there.
     """  # fmt: skip
     if output is not None:
@@ -38,7 +41,7 @@ def command(path: Path, output: Path | None) -> None:
     text = _read(path)
     from jacaros.porting import port  # here: it imports artifacts
 
-    ported = port(path.name, text)
+    ported = port(path.name, text, partial(_beside, path))
     if output is None:
         click.echo(ported.text, nl=False)
     else:
@@ -53,9 +56,9 @@ def command(path: Path, output: Path | None) -> None:
     names = ", ".join(ported.artifacts)
     click.echo(f"ported {names}: {done} of {counted(ported.lines, 'line')}", err=True)
     if ported.left:
-        click.echo(f"left to you: {_listed(ported.left)}", err=True)
+        click.echo(f"left to you: {_listed(ported.left, path.name)}", err=True)
     if ported.windows:
-        click.echo(f"left out, windows: {_listed(ported.windows)}", err=True)
+        click.echo(f"left out, windows: {_listed(ported.windows, path.name)}", err=True)
 
 
 def _check(output: Path) -> None:
@@ -74,14 +77,24 @@ def _read(path: Path) -> str:
         raise JacarosError(f"cannot read `{path}`: {error}") from error
 
 
-def _listed(lines: list[int]) -> str:
-    """Return line numbers as ranges: ``lines 3, 7-9``."""
-    ranges: list[list[int]] = []
-    for line in lines:
-        if ranges and line == ranges[-1][-1] + 1:
-            ranges[-1][1:] = [line]
+def _listed(places: list[tuple[str, int]], own: str) -> str:
+    """Return lines as ranges: ``lines 3, 7-9``; those of other files after them, with their names."""
+    ranges: list[tuple[str, int, int]] = []
+    for file, line in sorted(places, key=lambda place: (place[0] != own, place)):
+        if ranges and ranges[-1][0] == file and line == ranges[-1][2] + 1:
+            ranges[-1] = (file, ranges[-1][1], line)
         else:
-            ranges.append([line])
-    shown = ["-".join(map(str, each)) for each in ranges[:_MOST_LINES]]
+            ranges.append((file, line, line))
+    shown = [
+        (f"{first}" if first == last else f"{first}-{last}") + (f" of {file}" if file != own else "")
+        for file, first, last in ranges[:_MOST_LINES]
+    ]
     more = ["..."] if len(ranges) > _MOST_LINES else []
-    return f"{'line' if len(lines) == 1 else 'lines'} {', '.join([*shown, *more])}"
+    return f"{'line' if len(places) == 1 else 'lines'} {', '.join([*shown, *more])}"
+
+
+def _beside(path: Path, name: str) -> str | None:
+    try:
+        return file_text(path.with_name(name))
+    except (OSError, ValueError):
+        return None
