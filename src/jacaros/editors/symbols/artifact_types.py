@@ -29,6 +29,9 @@ from jacaros.runtime.mas.checks.observables import Observables, value_of_words
 
 _STANDARD: Final = (Blackboard, Console, ManualRepository, SystemArtifact, WorkspaceArtifact)
 """The types of the artifacts that each workspace has."""
+_BODY: Final = "the agent's body"
+EVERYWHERE: Final = frozenset({_BODY, *(each.__name__ for each in _STANDARD)})
+"""Holders of what every agent can use."""
 
 
 class ArgumentWords(NamedTuple):
@@ -151,9 +154,7 @@ def standard_offers() -> tuple[Offered, ...]:
         names = parameters_in(action.__doc__, arity) or ("",) * arity
         arguments = tuple(map(ArgumentWords, names))
         text = markdown(action.__doc__)
-        found.append(
-            Offered("operation", name, arguments, arity, False, "the agent's body", text, lambda: None)
-        )
+        found.append(Offered("operation", name, arguments, arity, False, _BODY, text, lambda: None))
     own = {(each.name, len(each.arguments)): each for each in found}  # the body's `makeArtifact` comes first
     return tuple(own.values())
 

@@ -6,7 +6,7 @@ from typing import Final
 from jacaros.agents.language.diagnostics import SourceFile
 from jacaros.agents.language.term_parser import PERFORMATIVES
 from jacaros.agents.terms.functions import ARITIES
-from jacaros.editors.symbols.artifact_types import Offered
+from jacaros.editors.symbols.artifact_types import EVERYWHERE, Offered
 from jacaros.editors.symbols.descriptions import described, names_of, prefix_of, summary_of_action
 from jacaros.editors.symbols.docstrings import parameters_in, short_unit
 from jacaros.editors.symbols.index import Index
@@ -54,6 +54,8 @@ _CONTENT: Final[dict[str, Kind]] = {
     **dict.fromkeys(("tell", "untell", "askOne", "askAll", "signal"), "belief"),
     **dict.fromkeys(("achieve", "unachieve"), "goal"),
 }
+_BEFORE_ANNOTATED: Final = frozenset({"@", "!", "!!", "?", "+", "-", "<-", ";", "&", ":"})
+"""Signs that say what an annotated name is."""
 _SENDS: Final = {".send": 1, ".broadcast": 0}
 
 
@@ -146,24 +148,20 @@ def _asks(index: Index, call: OpenCall) -> bool:
 
 
 def _annotations(reading: Reading) -> Iterator[Completion]:
-    """Propose annotations, by what they are written after: a label, a goal, an action or a belief."""
-    outer = [
-        each for each in reading.tokens if each.kind in ("@", "!", "!!", "?", "+", "-", "<-", ";", "&", ":")
-    ]
-    sign = outer[-1].kind if outer else ""
-    is_step = reading.part == "body" and sign in ("<-", ";")
-    table = (
-        _OF_LABELS
-        if sign == "@"
-        else _OF_ACTIONS
-        if is_step
-        else _OF_GOALS
-        if sign in ("!", "!!") and reading.part != "trigger"
-        else _OF_BELIEFS
-    )
-    for text, meaning in table.items():
+    for text, meaning in _table_of(reading).items():
         label = text.replace("${1:", "").replace("}", "")
         yield Completion(label, "annotation", text, reading.replaces, meaning)
+
+
+def _table_of(reading: Reading) -> dict[str, str]:
+    """Return the annotations of what is before the bracket: a label, a goal, an action or a belief."""
+    signs = [each.kind for each in reading.tokens if each.kind in _BEFORE_ANNOTATED]
+    sign = signs[-1] if signs else ""
+    if sign == "@":
+        return _OF_LABELS
+    if reading.part == "body" and sign in ("<-", ";"):
+        return _OF_ACTIONS
+    return _OF_GOALS if sign in ("!", "!!") and reading.part != "trigger" else _OF_BELIEFS
 
 
 # Kinds of proposals.
@@ -185,30 +183,22 @@ def _symbols(index: Index, reading: Reading, kind: Kind, rank: int = 0) -> Itera
 def _operations(index: Index, reading: Reading) -> Iterator[Completion]:
     for each in index.all_offered():
         if each.how == "operation":
-            yield _offered(each, "operation", reading, 1 if each.holder in _EVERYWHERE else 0)
-
-
-_EVERYWHERE: Final = frozenset(
-    {"the agent's body", "WorkspaceArtifact", "Console", "Blackboard", "SystemArtifact", "ManualRepository"}
-)
+            yield _offered(each, "operation", reading)
 
 
 def _properties(index: Index, reading: Reading, with_signals: bool = False) -> Iterator[Completion]:
     for each in index.all_offered():
         if each.how == "property" or (with_signals and each.how == "signal"):
-            yield _offered(each, "property", reading, 1 if each.holder in _EVERYWHERE else 0)
+            yield _offered(each, "property", reading)
 
 
-def _offered(each: Offered, kind: str, reading: Reading, rank: int) -> Completion:
-    names = [
-        one.name if each.how == "operation" else one.name[:1].upper() + one.name[1:] for one in each.arguments
-    ]
+def _offered(each: Offered, kind: str, reading: Reading) -> Completion:
     shown = [f"{one.name}: {short_unit(one.unit)}" if one.unit else one.name for one in each.arguments]
-    label = (
-        f"{each.name}({', '.join(shown)}{', ...' if shown and each.is_open else ''})" if shown else each.name
-    )
-    insert = _snippet(each.name, names)
-    return Completion(label, kind, insert, reading.replaces, f"{each.how} of {each.holder}", each.text, rank)
+    label = f"{each.name}({', '.join([*shown, *['...'] * each.is_open])})" if shown else each.name
+    names = [one.name[:1].upper() + one.name[1:] for one in each.arguments]
+    insert = _snippet(each.name, names if kind == "property" else [one.name for one in each.arguments])
+    detail, rank = f"{each.how} of {each.holder}", int(each.holder in EVERYWHERE)
+    return Completion(label, kind, insert, reading.replaces, detail, each.text, rank)
 
 
 def _actions(index: Index, reading: Reading, rank: int = 0, conditions: bool = False) -> Iterator[Completion]:

@@ -37,9 +37,12 @@ _MESSAGES: Final[Mapping[str, tuple[Kind, Role]]] = {
     "unachieve": ("goal", "removes"),
 }
 """What the content of a message is, by performative."""
-_OFFERS: Final[Mapping[str, Kind]] = {"goal": "goal"}
-_OF_LABELS: Final = frozenset({".remove_plan", ".plan_label"})
-"""Internal actions with labels of plans as arguments."""
+_FIRST: Final[Mapping[str, tuple[Kind, Role]]] = {
+    **dict.fromkeys(ON_GOALS, ("goal", "asks")),
+    ".abolish": ("belief", "removes"),
+    ".remove_plan": ("plan", "mentions"),
+}
+"""What the first argument of an internal action is."""
 _Place = tuple[nodes.Node, bool]
 """A node, and whether it is used as a condition."""
 
@@ -63,7 +66,7 @@ def occurrences_of(
         yield from seeker.clause(plan)
     for offer in program.offers:
         if offer.span is not None:
-            symbol = Symbol(_OFFERS.get(offer.what, "belief"), offer.name, len(offer.parameters))
+            symbol = Symbol("goal" if offer.what == "goal" else "belief", offer.name, len(offer.parameters))
             names = tuple([each.name[:1].upper() + each.name[1:] for each in offer.parameters])
             found = _word_in(offer.span, offer.name)
             if found is not None:
@@ -105,7 +108,7 @@ class _Seeker:
         self._scope = scope_of(clause.span) if clause.span is not None else ""
         if isinstance(clause, nodes.Literal):
             self._note(kind, clause, "defines" if kind == "belief" else "calls")
-            self._push(*_parts(clause))
+            self._push(*children(clause))
         else:
             self._push(clause)
         while self._stack:
@@ -125,7 +128,7 @@ class _Seeker:
     def _look(self, node: nodes.Node, asked: bool) -> None:
         match node:
             case nodes.Plan(label=nodes.Literal() as label):
-                self._name_plan(label)
+                self._literal("plan", label, "defines")
                 self._below(node, without=label)
             case nodes.Trigger(kind=kind, literal=nodes.Literal() as literal):
                 self._literal("goal" if kind == "!" else "belief", literal, "handles")
@@ -160,7 +163,7 @@ class _Seeker:
 
     def _literal(self, kind: Kind, literal: nodes.Literal, role: Role) -> None:
         self._note(kind, literal, role)
-        self._push(*_parts(literal))
+        self._push(*children(literal))
 
     def _call(self, call: nodes.InternalAction) -> None:
         self._note_name("internal action", call, call.name, "calls")
@@ -174,20 +177,9 @@ class _Seeker:
                 self._message(content, *_MESSAGES[word])
         if action.condition is not None and len(arguments) > action.condition:
             self._push(arguments.pop(action.condition), asked=True)
-        first = arguments[0] if arguments else None
-        if isinstance(first, nodes.Literal):
-            special: tuple[Kind, Role] | None = (
-                ("goal", "asks")
-                if call.name in ON_GOALS
-                else ("belief", "removes")
-                if call.name == ".abolish"
-                else ("plan", "mentions")
-                if call.name in _OF_LABELS
-                else None
-            )
-            if special is not None:
-                self._literal(special[0], first, special[1])
-                del arguments[0]
+        if call.name in _FIRST and arguments and isinstance(first := arguments[0], nodes.Literal):
+            self._literal(_FIRST[call.name][0], first, _FIRST[call.name][1])
+            del arguments[0]
         for each in arguments:
             if action.awaits and isinstance(each, nodes.BodyTerm):
                 self._await(each)
@@ -209,24 +201,15 @@ class _Seeker:
             else:
                 self._push(step)
 
-    def _name_plan(self, label: nodes.Literal) -> None:
-        self._note_name("plan", label, label.functor, "defines")
-        self._push(*_parts(label))
-
     def _note(self, kind: Kind, literal: nodes.Literal, role: Role) -> None:
         space = literal.namespace
         if isinstance(space, nodes.Variable) or kind in ("operation", "plan"):
             space = None
         elif space is not None and "#" in space:
             space = f"{space} of {self._name}"
-        arguments = tuple(
-            [
-                each.name if isinstance(each, nodes.Variable) and not each.unnamed else ""
-                for each in literal.arguments
-            ]
-        )
-        size = 0 if kind == "plan" else len(arguments)
-        self._note_name(kind, literal, literal.functor, role, size, space or "", arguments)
+        names = tuple(map(_variable_name, literal.arguments))
+        size = 0 if kind == "plan" else len(names)
+        self._note_name(kind, literal, literal.functor, role, size, space or "", names)
 
     def _note_name(
         self,
@@ -253,9 +236,8 @@ def scope_of(clause: Span) -> str:
     return f"{clause.file.name}:{clause.line}:{clause.column}"
 
 
-def _parts(literal: nodes.Literal) -> list[nodes.Node]:
-    """Return the arguments and annotations of a literal, and its namespace if it is a variable."""
-    return list(children(literal))
+def _variable_name(argument: nodes.Node) -> str:
+    return argument.name if type(argument) is nodes.Variable and not argument.unnamed else ""
 
 
 def _name_in(span: Span, name: str) -> Span | None:

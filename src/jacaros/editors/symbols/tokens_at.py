@@ -22,6 +22,10 @@ _NAMES: Final = frozenset({"atom", "variable"})
 _OPENS: Final = {"(": ")", "[": "]", "{": "}"}
 _BEGINS: Final = frozenset("+-!@{^")
 """What may begin a clause at the beginning of a line, so that a broken clause above does not reach it."""
+_BEFORE_ACTIONS: Final = frozenset(
+    {"<-", ";", ":", "&", "|", "not", "(", ",", "{", "[", ":-", "|&|", "|||", "="}
+)
+"""What may be before an internal action."""
 
 
 class OpenCall(NamedTuple):
@@ -74,28 +78,19 @@ def reading_at(file: SourceFile, at: Position) -> Reading:
     """Return what is around a position, whether the text parses or not."""
     comments: list[Comment] = []
     tokens = tokens_of(file, *_around(file, at.line), comments)
-    empty = Span(file, at.line, at.column, at.line, at.column)
-    before = [each for each in tokens if (each.line, each.column) < at]
-    last = before[-1] if before else None
+    index = sum((each.line, each.column) < at for each in tokens)
+    last = tokens[index - 1] if index else None
     if _in_comment(comments, at) or (last is not None and _in_string(last, at)):
-        return Reading("text", "", empty)
-    touching = last is not None and last.line == at.line and last.end >= at.column
-    named = touching and last is not None and _is_name(last)
-    if not named or last is None:
-        following = tokens[len(before)] if len(before) < len(tokens) else None
-        if touching and last is not None and last.kind == "." and _begins_action(before):
-            return _read(
-                file, tokens, len(before) - 1, ".", Span(file, last.line, last.column, at.line, at.column)
-            )
-        reading = _read(file, tokens, len(before), "", empty)
-        if following is not None and (following.line, following.column) == at and _is_name(following):
-            _name(reading, file, tokens, len(before))
-        return reading
-    prefix = last.text[: at.column - last.column]
-    reading = _read(
-        file, tokens, len(before) - 1, prefix, Span(file, last.line, last.column, at.line, at.column)
-    )
-    _name(reading, file, tokens, len(before) - 1)
+        return Reading("text", "", Span(file, at.line, at.column, at.line, at.column))
+    if last is not None and last.line == at.line and last.end >= at.column:
+        index -= _is_name(last) or _begins_action(tokens[:index])  # the name that the cursor is in
+    here = tokens[index] if index < len(tokens) and (tokens[index].line, tokens[index].column) <= at else None
+    start = at.column if here is None else here.column
+    prefix = "" if here is None else here.text[: at.column - start]
+    reading = _read(tokens, index, prefix, Span(file, at.line, start, at.line, at.column))
+    if here is not None and _is_name(here):
+        reading.word, reading.arity = here.text, _arity(tokens, index + 1)
+        reading.word_span = Span(file, here.line, here.column, here.line, here.end)
     return reading
 
 
@@ -123,15 +118,10 @@ def _is_name(token: Token) -> bool:
 
 
 def _in_comment(comments: list[Comment], at: Position) -> bool:
-    for comment in comments:
-        lines = comment.text.count("\n")
-        end = (
-            comment.line + lines,
-            len(comment.text.rpartition("\n")[2]) + 1 + (0 if lines else comment.column - 1),
-        )
-        if (comment.line, comment.column) < at and (
-            at < end or (at == end and comment.text.startswith("//"))
-        ):
+    for text, line, column, _ in comments:
+        *above, last = text.split("\n")
+        end = (line + len(above), len(last) + (1 if above else column))
+        if (line, column) < at and (at < end or (at == end and text.startswith("//"))):
             return True
     return False
 
@@ -144,34 +134,10 @@ def _in_string(last: Token, at: Position) -> bool:
 
 def _begins_action(before: list[Token]) -> bool:
     """Return whether the dot before the cursor begins an internal action, and does not end a clause or follow a name."""
-    if len(before) < 2:
+    if len(before) < 2 or before[-1].kind != ".":
         return False
     dot, one = before[-1], before[-2]
-    adjacent = one.line == dot.line and one.end == dot.column
-    return not adjacent and one.kind in (
-        "<-",
-        ";",
-        ":",
-        "&",
-        "|",
-        "not",
-        "(",
-        ",",
-        "{",
-        "[",
-        ":-",
-        "|&|",
-        "|||",
-        "=",
-    )
-
-
-def _name(reading: Reading, file: SourceFile, tokens: list[Token], index: int) -> None:
-    """Note the whole name at the cursor, with the number of its arguments."""
-    token = tokens[index]
-    reading.word = token.text
-    reading.word_span = Span(file, token.line, token.column, token.line, token.end)
-    reading.arity = _arity(tokens, index + 1)
+    return (one.line, one.end) != (dot.line, dot.column) and one.kind in _BEFORE_ACTIONS
 
 
 def _arity(tokens: list[Token], index: int) -> int:
@@ -186,48 +152,37 @@ def _arity(tokens: list[Token], index: int) -> int:
     return count
 
 
-def _read(file: SourceFile, tokens: list[Token], index: int, prefix: str, replaces: Span) -> Reading:
+def _read(tokens: list[Token], index: int, prefix: str, replaces: Span) -> Reading:
     """Read the clause before the token at *index*."""
-    start = _start(tokens, index)
+    start, end = _start(tokens, index), _end(tokens, index)
     clause = tokens[start:index]
     part: Part = "head"
     opened: list[OpenCall] = []
     for number, token in enumerate(clause):
-        kind = token.kind
-        if kind in _OPENS:
-            called = clause[number - 1] if number else None
-            joined = (
-                called is not None
-                and called.kind == "atom"
-                and (called.line, called.end) == (token.line, token.column)
-            )
-            opened.append(OpenCall(called.text if joined and called is not None else "", 0, kind))
-        elif kind in _OPENS.values() and opened:
-            opened.pop()
-        elif kind == "," and opened:
-            opened[-1] = opened[-1]._replace(argument=opened[-1].argument + 1)
+        before = clause[number - 1] if number else None
+        if token.kind in _OPENS:
+            opened.append(OpenCall(_called(before, token), 0, token.kind))
         elif not opened:
             part = _part_after(token, part, number)
-        if opened and kind in _NAMES and clause[number - 1].kind in ("(", ","):
+        elif token.kind in _OPENS.values():
+            opened.pop()
+        elif token.kind == ",":
+            opened[-1] = opened[-1]._replace(argument=opened[-1].argument + 1)
+        elif token.kind in _NAMES and before is not None and before.kind in ("(", ","):
             opened[-1] = opened[-1]._replace(words=(*opened[-1].words, token.text))
-    end = _end(tokens, index)
-    names = dict.fromkeys(
-        each.text
-        for at, each in enumerate(tokens[start:end])
-        if each.kind == "variable" and (start + at != index or not prefix)
-    )
+    rest = tokens[index + bool(prefix) : end]
+    names = dict.fromkeys(each.text for each in (*clause, *rest) if each.kind == "variable")
+    names.pop("_", None)
     first = [each.text for each in clause[_label_end(clause) :][:2]]
     triggered = "".join(each for each in first if each in ("+", "-", "!", "?", "^"))
-    return Reading(
-        part,
-        prefix,
-        replaces,
-        sign=clause[-1].kind if clause else "",
-        triggered=triggered,
-        calls=opened,
-        variables=[each for each in names if each != "_"],
-        tokens=clause,
-    )
+    sign = clause[-1].kind if clause else ""
+    return Reading(part, prefix, replaces, "", None, sign, triggered, opened, list(names), clause)
+
+
+def _called(before: Token | None, opener: Token) -> str:
+    """Return the name that is written right before a bracket."""
+    joined = before is not None and (before.line, before.end) == (opener.line, opener.column)
+    return before.text if joined and before is not None and before.kind == "atom" else ""
 
 
 def _part_after(token: Token, part: Part, number: int) -> Part:
