@@ -18,7 +18,7 @@ def renamable(index: Index, file: SourceFile, at: Position) -> Span:
     """Return the range of the name at a position.
 
     Raises:
-        RenameRefused: there is none, or its name is not that of this project.
+        RenameRefused: there is no name, or it is not a name of this project.
     """
     return _renamable(index, file, at).span
 
