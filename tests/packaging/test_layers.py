@@ -50,7 +50,7 @@ def test_every_package_has_its_place_in_the_layers() -> None:
     contracts = configparser.ConfigParser()
     contracts.read(ROOT / ".importlinter")
     layers = contracts["importlinter:contract:layers"]["layers"].split()
-    placed = {layer.removeprefix("jacaros.").replace(".", "/") for layer in layers}
+    placed = {layer.strip("()").removeprefix("jacaros.").replace(".", "/") for layer in layers}
     package = ROOT / "src" / "jacaros"
     packages = {file.parent.relative_to(package).as_posix() for file in package.glob("*/*/__init__.py")}
     missing = {each for each in packages if each not in placed and each.partition("/")[0] not in placed}
