@@ -111,6 +111,13 @@ def test_rename_refuses_what_would_change_the_meaning(marked: str, name: str, re
     assert refused.value.help
 
 
+def test_rename_refuses_a_name_that_is_also_in_a_broken_clause() -> None:
+    broken = "+!go <- !help‸(1). // help\n+!b <- .print(help).\n+!c <- !help(; a."
+    with pytest.raises(RenameRefused, match=r"a clause with errors \(robot.asl:3\)"):
+        rename(*edited(broken, LIBRARY), "assist")
+    assert rename(*edited(broken.replace("(;", ";"), LIBRARY), "assist")
+
+
 def test_rename_refuses_names_of_libraries() -> None:
     index, file, at = edited("+!go <- !hel‸p.", ("$jacaros/lib.asl", "+!help."))
     with pytest.raises(RenameRefused, match="in the library"):

@@ -107,6 +107,14 @@ class Index:
         for found in self._by_file.get(file, {}).values():
             yield from found
 
+    def files(self) -> Iterator[tuple[SourceFile, list[Occurrence]]]:
+        """Yield the programs and included files, as they were read, with their occurrences."""
+        self._grouped()
+        for name in self._by_file:
+            found = list(self.in_file(name))
+            if name.endswith(".asl"):
+                yield found[0].span.file, found
+
     def _grouped(self) -> dict[Symbol, list[Occurrence]]:
         if self._by_symbol is None:
             self._by_symbol, self._by_file = {}, {}

@@ -9,8 +9,11 @@ from jacaros.agents.language.term_parser import KEYWORDS
 from jacaros.editors.symbols.index import Index
 from jacaros.editors.symbols.model import Edit, Occurrence, Position, RenameRefused, Symbol
 from jacaros.editors.symbols.navigation import occurrence_at
+from jacaros.editors.symbols.tokens_at import tokens_of
 
 _ATOM: Final = re.compile(r"[a-z]\w*|'[^'\n]+'", re.ASCII)
+_SIGNS: Final = frozenset({"!", "!!", "?", "+", "-", "-+"})
+"""What is before the name of a goal or belief, and not before a term."""
 _VARIABLE: Final = re.compile(r"[A-Z_]\w*", re.ASCII)
 
 
@@ -34,6 +37,7 @@ def rename(index: Index, file: SourceFile, at: Position, name: str) -> list[Edit
         return []
     _check_form(symbol, name)
     _check_clash(index, symbol, name)
+    _check_errors(index, symbol)
     return [Edit(each.span, name) for each in index.of(symbol)]
 
 
@@ -84,3 +88,22 @@ def _check_clash(index: Index, symbol: Symbol, name: str) -> None:
     offered = index.offered(wanted)
     if offered:
         raise RenameRefused(f"`{wanted}` is {offered[0].role}", "choose another name")
+
+
+def _check_errors(index: Index, symbol: Symbol) -> None:
+    """Refuse if the name is also in a directive, or in a step that does not parse: it would keep the old name there."""
+    for file, occurrences in index.files() if symbol.kind != "variable" else ():
+        known = {each.span[1:3] for each in occurrences if each.symbol.name == symbol.name}
+        if file.text.count(symbol.name) == len(known):
+            continue
+        clauses = {each.clause[1:] for each in occurrences}
+        before = None
+        for token in tokens_of(file, 1, len(file.lines)):
+            at = token.line, token.column
+            if token.text == symbol.name and at not in known:
+                in_term = any(each[:2] <= at < each[2:] for each in clauses) and before not in _SIGNS
+                if not in_term:
+                    where = f"({file.name}:{token.line})"
+                    message = f"`{symbol.name}` is also in a directive or a clause with errors {where}"
+                    raise RenameRefused(message, "change it there first")
+            before = token.kind
