@@ -17,14 +17,14 @@ class Editor:
     """One editor with one folder open."""
 
     def __init__(self, folder: Path, client: LanguageClient) -> None:
-        self.folder, self.client = folder, client
+        self.folder, self.client = folder.resolve(), client
         self.capabilities: types.ServerCapabilities | None = None
         self._versions: dict[str, int] = {}
         self._reported = asyncio.Condition()
         self._reports: dict[str, int] = {}
 
     def uri(self, name: str) -> str:
-        return (self.folder / name).resolve().as_uri()
+        return (self.folder / name).as_uri()
 
     def document(self, name: str) -> types.TextDocumentIdentifier:
         return types.TextDocumentIdentifier(self.uri(name))
@@ -94,7 +94,7 @@ async def _session(
             )
         ),
     )
-    folders = [types.WorkspaceFolder(folder.resolve().as_uri(), folder.name)]
+    folders = [types.WorkspaceFolder(editor.folder.as_uri(), folder.name)]
     params = types.InitializeParams(capabilities=capabilities, workspace_folders=folders)
     try:
         result = await asyncio.wait_for(client.initialize_session(params), SECONDS)
