@@ -13,6 +13,7 @@ from jacaros.editors.lsp.positions import Positions
 from jacaros.runtime.files.texts import Suggestion, close_matches
 
 _WORD: Final = re.compile(r"(?P<mark>[-+^]*[!?.~]*)(?P<name>\w+(?:\.\w+)*)")
+_MARK: Final = re.compile(r"[-+^]*[!?.~]*$")
 _ARITY: Final = re.compile(r"/\d+$")
 
 
@@ -68,10 +69,12 @@ def _replaced(span: Span, name: str) -> tuple[Span, str] | None:
     word = next((each for each in words if each["name"] == wanted), None)
     if word is None:
         return None
-    begin = word.start() if meant["mark"] else word.start("name")
-    if word["name"] == meant["name"] and word["mark"] == meant["mark"]:
-        return None
-    return _part(span, begin, word.end()), name
+    whole = _part(span, word.start("name"), word.end())
+    mark = _MARK.search(span.file.lines[span.line - 1][: whole.column - 1])
+    marks = mark.group() if mark is not None else ""
+    if not meant["mark"] or marks.endswith(meant["mark"]):
+        return (whole, meant["name"]) if word["name"] != meant["name"] else None
+    return whole._replace(column=whole.column - len(marks)), name
 
 
 def _is_quoted(text: str, at: int) -> bool:
