@@ -80,7 +80,7 @@ def test_a_failure_stops_the_run_whether_or_not_it_is_handled() -> None:
     ]
 
 
-def test_kinds_of_failures_are_told_apart() -> None:
+def test_each_kind_of_failure_has_its_breakpoint() -> None:
     assert len(stops({"failure": "plan"}, FAILING)) == 1
     assert stops({"failure": "operation"}, FAILING) == []
     program = "!go. +!go <- unknownOperation(3)."
