@@ -231,10 +231,9 @@ class Session:
     def _stopped(self, state: DebugState) -> None:
         if state.cannot and state.cannot != self._cannot:
             self._cannot = state.cannot
-            stopped = "robots were stopped; " if self._system.options.real_graph else ""
-            self._channel.output(
-                "".join(f"{stopped}not paused: {each}\n" for each in state.cannot), "important"
-            )
+            stopped = ["robots were commanded to stand still"] if self._system.options.real_graph else []
+            lines = [*stopped, *(f"not paused: {each}" for each in state.cannot)]
+            self._channel.output("".join(f"{each}\n" for each in lines), "important")
         failure, why = self._debugger.failure, state.why
         reason = "exception" if failure is not None else why if " " not in why else "breakpoint"
         self._channel.event(
@@ -269,6 +268,8 @@ class Session:
 
     def _step(self, what: StepKind, given: Arguments) -> Body:
         host, intention = self._threads.of(_number(given, "threadId"))
+        if host.mind is None:
+            raise UsageError(f"agent `{host.name}` is written in Python; step another agent, or continue")
         if given.get("granularity") == "instruction":
             what = "cycle"
         elif intention is None and what != "cycle":
@@ -298,7 +299,11 @@ class Session:
         if (alone := written.removeprefix("?")) in bindings:
             written = alone
             shown = self._variables.term(written, bindings[written])
-            return {"result": shown.pop("value"), **shown}
+            return {
+                "result": shown["value"],
+                "type": shown["type"],
+                "variablesReference": shown["variablesReference"],
+            }
         if written.startswith(("!", "+", "-")) and given.get("context") == "repl":
             if not self._settings.changes:
                 raise UsageError("this session is read-only; set `allowChanges` to change beliefs and goals")

@@ -198,3 +198,22 @@ def test_the_properties_of_a_robot_are_shown(client: DapClient, tmp_path: Path) 
     assert belief["value"] == robot["odom"]["value"]
     annotations = client.variables(belief["variablesReference"])["annotations"]["value"]
     assert "artifact_name(turtlebot4)" in annotations
+
+
+def test_an_agent_in_python_is_a_thread_without_plans(client: DapClient, tmp_path: Path) -> None:
+    (tmp_path / "ann.asl").write_text("!go.\n+!go\n   <- .print(a).\n")
+    (tmp_path / "bob.py").write_text(
+        "from jacaros import PythonAgent\n\n\nclass Bob(PythonAgent):\n    async def run(self) -> None:\n"
+        "        await self.sleep(3600)\n"
+    )
+    project = tmp_path / "both.jcm"
+    project.write_text("mas both {\n  agent ann : ann.asl\n  agent bob : bob.py\n}\n")
+    client.launch(project, clock="real", stopOnEntry=True)
+    client.event("stopped")
+    assert "not paused: agent bob (Python)" in client.output["important"]
+    threads = {each["name"]: each["id"] for each in client.ask("threads")["threads"]}
+    assert set(threads) == {"ann", "bob (Python)"}
+    response = client.response("next", threadId=threads["bob (Python)"])
+    assert response["message"] == "agent `bob` is written in Python; step another agent, or continue"
+    stopped = client.step("next", {"threadId": threads["ann"]})
+    assert client.lines(stopped) == [3]
