@@ -65,7 +65,7 @@ release: $(VENV)/.installed-dev
 
 # With the version of the package.
 vsix:
-	cd editors/vscode && npm ci --silent && npm run --silent package -- $$(sed -n 's/^version = "\(.*\)"/\1/p' ../../pyproject.toml)
+	cd editors/vscode && npm ci --silent --ignore-scripts && npm run --silent package -- $$(sed -n 's/^version = "\(.*\)"/\1/p' ../../pyproject.toml)
 
 bench: $(VENV)/.installed $(VENV)-bench/.installed
 	$(VENV)/bin/python benchmarks/bench.py $(BENCH)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Install a program that only tests need: install_program.sh PACKAGE NAME...  Any of the names will do.
+# Install a program that only tests need: install_program.sh PACKAGE NAME...  Any of the names will do; a file has its full path.
 # Exit code 3: this system cannot have it.
 set -euo pipefail
 
@@ -10,7 +10,7 @@ refuse() { say "CANNOT INSTALL ${package^^} HERE: $*"; exit 3; }
 
 PATH=$PATH:/usr/sbin
 for name in "$@"; do
-  if command -v "$name" >/dev/null; then say "$name: there"; exit 0; fi
+  if command -v "$name" >/dev/null || [[ $name = /* && -e $name ]]; then say "$name: there"; exit 0; fi
 done
 command -v apt-get >/dev/null || refuse "this is not a Debian system; install $package by hand"
 as_root=()

@@ -100,6 +100,9 @@ def parts() -> list[Part]:
         Part("mosquitto", (*INSTALL, "mosquitto", "mosquitto"), "install"),
         Part("zsh", (*INSTALL, "zsh", "zsh"), "install"),
         Part("fish", (*INSTALL, "fish", "fish"), "install", needs="zsh"),
+        Part("compiler", (*INSTALL, "build-essential", "cc"), "install"),
+        Part("tree-sitter", (*INSTALL, "libtree-sitter-dev", "/usr/include/tree_sitter/parser.h"), "install"),
+        Part("neovim", (*INSTALL, "neovim", "nvim"), "install"),
         Part("ros1-install", ("tools/install_ros1.sh",), "install"),
         Part("ros2-jazzy-install", ("tools/install_ros2.sh", "jazzy"), "install"),
         Part("ros2-kilted-install", ("tools/install_ros2.sh", "kilted"), "install"),
@@ -156,6 +159,8 @@ def parts() -> list[Part]:
         Part("shells", (*PYTEST, "tests/shells"), needs="fish", skips_fail=True),
         Part("browser", (*PYTEST, "tests/unit/look", "-m", "browser"), needs="chromium", skips_fail=True),
         Part("site", (*PYTEST, "tests/site"), needs="site-install", budget=600, skips_fail=True),
+        # With the tests of "tests/editors".
+        Part("editors", ("tools/test_editors.sh",), needs="neovim", budget=120, skips_fail=True),
     ]
     for minor in (12, 13, 14):
         python = newer_python(minor)
