@@ -159,8 +159,9 @@ def parts() -> list[Part]:
         Part("shells", (*PYTEST, "tests/shells"), needs="fish", skips_fail=True),
         Part("browser", (*PYTEST, "tests/unit/look", "-m", "browser"), needs="chromium", skips_fail=True),
         Part("site", (*PYTEST, "tests/site"), needs="site-install", budget=600, skips_fail=True),
-        # With the tests of "tests/editors".
-        Part("editors", ("tools/test_editors.sh",), needs="neovim", budget=120, skips_fail=True),
+        Part(
+            "editors", ("tools/test_editors.sh", "tests/editors"), needs="neovim", budget=120, skips_fail=True
+        ),
     ]
     for minor in (12, 13, 14):
         python = newer_python(minor)

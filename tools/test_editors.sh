@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Build the extension for VS Code and test its grammars, with the Node.js of pyright's wheel; then test what other editors use.
+# Build the extension for VS Code and test its grammars, with the Node.js of pyright's wheel; then run the tests of other editors,
+# test_editors.sh FOLDER.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -13,4 +14,4 @@ npm ci --silent --ignore-scripts
 npm test
 npm run package
 cd "$root"
-exec "$python" -m pytest -q -p no:cacheprovider tests/editors
+exec "$python" -m pytest -q -p no:cacheprovider "$@"

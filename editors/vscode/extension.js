@@ -9,6 +9,7 @@ const { provider, runTask } = require("./tasks");
 const LANGUAGES = ["agentspeak", "mas2j", "jcm", "yaml"];
 
 let client;
+let answers;
 
 async function start() {
   const uri = vscode.window.activeTextEditor?.document.uri;
@@ -39,18 +40,12 @@ function fileOf(argument) {
 
 const optionsFor = (uri) => vscode.workspace.getConfiguration("jacaros", uri).get("runOptions");
 
-/** Explain with `jacaros why` when a plan was selected, or why it was not, in a recording that you choose. */
-async function why(uri, where) {
-  const found = await vscode.workspace.findFiles("**/*.{jsonl,jsonl.gz}", "**/{.venv,node_modules}/**", 200);
-  const timed = await Promise.all(found.map(async (file) => ({ file, time: (await vscode.workspace.fs.stat(file)).mtime })));
-  const [last] = timed.sort((one, other) => other.time - one.time);
-  if (!last) {
-    vscode.window.showErrorMessage(`JaCaROS: no recording yet: add "--record", "run.jsonl" to the setting jacaros.runOptions, and run`);
-    return;
-  }
-  const line = where ?? vscode.window.activeTextEditor.selection.active.line + 1;
-  const plan = typeof line === "number" ? `${uri.path.split("/").pop()}:${line}` : `@${line}`;
-  await runTask("why", [last.file.fsPath, "plan", plan], uri);
+/** Show why the plan at a line did or did not run in the last recording, as the language server finds it. */
+async function why(uri, line = vscode.window.activeTextEditor.selection.active.line + 1) {
+  if (!client?.isRunning()) return complain("the language server is not running");
+  answers ??= vscode.window.createOutputChannel("JaCaROS: Why");
+  answers.appendLine(await vscode.commands.executeCommand("jacaros.explain", uri.toString(), line));
+  answers.show(true);
 }
 
 const COMMANDS = {
