@@ -14,6 +14,8 @@ from site_pages import ROOT, BrokenPage, copy_pages, navigation, sources
 
 SITE = ROOT / "site"
 WORK = ROOT / "build" / "site-sources"
+LIVE = ROOT / "build" / "live"
+"""Where `make live` builds the pages with Python in them; the site is complete without."""
 ADDRESS = "https://jacaros.github.io/jacaros/"
 
 
@@ -34,6 +36,9 @@ def prepare() -> None:
     copy_pages(WORK / "pages")
     settings = (SITE / "mkdocs.yml").read_text(encoding="utf-8")
     settings = settings.replace(f"site_url: {ADDRESS}", f"site_url: {ADDRESS}{version()}/")
+    if LIVE.exists():
+        settings = settings.replace("live: false", "live: true")
+        shutil.copytree(LIVE, WORK / "pages" / "live")
     menu = json.dumps(navigation(sources()), indent=1)  # JSON is YAML
     (WORK / "mkdocs.yml").write_text(f"{settings}\nnav: {menu}\n", encoding="utf-8")
 

@@ -23,10 +23,12 @@ SCHEMES = {"light": "default", "dark": "slate"}
 WIDTHS = {1440: 900, 390: 844}
 """Heights by widths: a laptop and a phone."""
 SERIOUS = """
-axe.run({resultTypes: ["violations"]}).then((found) => found.violations
+axe.run({preload: false, resultTypes: ["violations"], ...%s}).then((found) => found.violations
   .filter((each) => ["serious", "critical"].includes(each.impact))
   .map((each) => `${each.id}: ${each.nodes[0].html.slice(0, 200)} ${each.nodes[0].failureSummary}`))
 """
+RULES = {"light": "{}", "dark": '{runOnly: ["color-contrast", "link-in-text-block"]}'}
+"""Options of axe-core by schemes, which differ in colours only."""
 ELSEWHERE = """
 performance.getEntriesByType("resource").map((each) => each.name).filter((name) => !name.startsWith(location.origin))
 """
@@ -119,7 +121,7 @@ async def look(page: Page, address: str, scheme: str, width: int) -> list[str]:
     await page.resize(width, WIDTHS[width], mobile=width < 500)
     await page.open(address)
     assert await page.evaluate("document.body.dataset.mdColorScheme") == SCHEMES[scheme]
-    found = [*await page.evaluate(SERIOUS), *await page.evaluate(ELSEWHERE)]
+    found = [*await page.evaluate(SERIOUS % RULES[scheme]), *await page.evaluate(ELSEWHERE)]
     if await page.evaluate("document.documentElement.scrollWidth > innerWidth"):
         found.append("the page is wider than the window")
     return found
