@@ -48,8 +48,8 @@ class Source:
     seed: int | None = None
     until_idle: bool = False
 
-    def __post_init__(self) -> None:
-        """Check names and sizes.
+    def check(self) -> None:
+        """Check names and sizes: the program may come from a link.
 
         Raises:
             UsageError: one is not allowed here.
@@ -169,6 +169,7 @@ class RunningProgram:
         """Run the program to its end, and return why it could not."""
         folder = Path(self._folder.name)
         try:
+            source.check()
             options = source.options(folder)
             deployment = mapped(load_deployment(source.written(folder)), options.mappings)
             self._system = System(deployment, self._clock, self, options)

@@ -27,6 +27,8 @@ class PacedClock(VirtualClock):
     """
 
     has_speed = True
+    CYCLES_PER_MILLISECOND = 50
+    """About what agents do in real time: the world moves on beside a plan that never ends."""
 
     def __init__(self, speed: float = 1.0, real: Callable[[], float] = real_time) -> None:
         super().__init__()
