@@ -97,6 +97,7 @@ def parts() -> list[Part]:
     found = [
         Part("chromium", (*INSTALL, "chromium", "chromium", "chromium-browser", "google-chrome"), "install"),
         Part("site-install", ("tools/install_site_checks.sh",), "install"),
+        Part("live-build", (PYTHON, "tools/build_live.py", "build/live"), "install"),
         Part("mosquitto", (*INSTALL, "mosquitto", "mosquitto"), "install"),
         Part("zsh", (*INSTALL, "zsh", "zsh"), "install"),
         Part("fish", (*INSTALL, "fish", "fish"), "install", needs="zsh"),
@@ -162,6 +163,7 @@ def parts() -> list[Part]:
         Part(
             "editors", ("tools/test_editors.sh", "tests/editors"), needs="neovim", budget=120, skips_fail=True
         ),
+        Part("live", (*PYTEST, "tests/live"), needs="live-build", budget=120, skips_fail=True),
     ]
     for minor in (12, 13, 14):
         python = newer_python(minor)

@@ -6,9 +6,12 @@ const HERE = new URL(".", import.meta.url);
 const PATIENCE = 1500;  // milliseconds in which a run must end when asked to
 const SPEEDS = [1, 2, 5, 10];
 
+const COLLECTED = new Uint8Array([0, 97, 115, 109, 1, 0, 0, 0, 1, 3, 1, 95, 0]);  // a module that declares an empty struct
+
 /** What this browser lacks, in words; "" for nothing. */
 function missing() {
   if (typeof WebAssembly === "undefined") return "WebAssembly";
+  if (!WebAssembly.validate(COLLECTED)) return "garbage collection in WebAssembly";
   if (typeof DecompressionStream === "undefined") return "DecompressionStream";
   return typeof Worker === "undefined" ? "Web Workers" : "";
 }
@@ -78,7 +81,8 @@ class LiveProgram {
     this.log.setAttribute("aria-label", "Messages");
     this.stage = element("div", "jl-stage", ...this.poster);
     root.classList.add("jl");
-    root.replaceChildren(element("div", "jl-left", this.files, this.editor.root, this.bar, this.log), this.stage);
+    const left = element("div", "jl-left", this.files, this.editor.root, this.bar, this.log);
+    root.replaceChildren(element("div", "jl-both", left, this.stage));
     this.editor.field.addEventListener("keydown", (event) => {
       if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) this.run();
     });
@@ -134,7 +138,7 @@ class LiveProgram {
     this.clear();
     const source = this.source(), speed = Number(this.speed.value);
     this.began = performance.now();
-    this.show("starting", python.worker ? "Starting …" : "Loading Python (27 MB, once) …");
+    this.show("starting", python.worker ? "Starting …" : "Loading Python, about 27 MB, once …");
     python.begin();
     const channel = new MessageChannel();
     const inner = await this.frame();
@@ -249,5 +253,15 @@ async function fill(root, known) {
   if (error) live.say(error.message);
 }
 
+/** Load the style sheet, unless the page has it. */
+function dress() {
+  const { href } = new URL("live.css", HERE);
+  if ([...document.styleSheets].some((each) => each.href === href)) return;
+  const link = element("link", "");
+  Object.assign(link, { rel: "stylesheet", href });
+  document.head.append(link);
+}
+
+dress();
 const known = await programs();
 for (const root of document.querySelectorAll("[data-jacaros-live]")) await fill(root, known);

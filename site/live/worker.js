@@ -70,7 +70,7 @@ class Turns {
   }
 }
 
-const started = start();
+const started = start().catch((error) => { throw new Error(`Python does not start in this browser: ${error.message}`); });
 let turns = null;
 
 onmessage = async ({ data, ports: [port] }) => {

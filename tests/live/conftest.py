@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from os import PathLike
 from pathlib import Path
 from threading import Thread
 from typing import Any
@@ -15,11 +16,11 @@ BUILT = Path(__file__).resolve().parents[2] / "build" / "live"
 class _Handler(SimpleHTTPRequestHandler):
     """Serves files as any web server does, and logs nothing."""
 
-    extensions_map = {
-        **SimpleHTTPRequestHandler.extensions_map,
-        ".mjs": "text/javascript",
-        ".wasm": "application/wasm",
-    }
+    def guess_type(self, path: str | PathLike[str]) -> str:
+        """Return the media type of a file; old versions of Python do not know all of them."""
+        return {".mjs": "text/javascript", ".wasm": "application/wasm"}.get(
+            Path(path).suffix
+        ) or super().guess_type(path)
 
     def log_message(self, format: str, *args: Any) -> None:
         pass

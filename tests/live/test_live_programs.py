@@ -13,15 +13,11 @@ from played import played
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "unit" / "look"))
 
-from devtools import Page, chromium, needs_chromium  # noqa: E402 - beside the tests of the page
+from devtools import Page, chromium, needs_chromium
 
 LONG = 120.0
 """Seconds in which Python has started, also on a machine that does much else."""
 RUN, STOP = ".jl-bar button:nth-of-type(1)", ".jl-bar button:nth-of-type(2)"
-    ".jl-bar button:nth-of-type(1)",
-    ".jl-bar button:nth-of-type(2)",
-    ".jl-bar button:nth-of-type(4)",
-)
 LIVE = "document.querySelector('.jl').liveProgram"
 INSIDE = "document.querySelector('.jl-page')?.contentDocument.body.innerText"
 
