@@ -6,6 +6,7 @@ Valid files are the seeds. Their bytes, words, lines and, for JSON and CBOR, val
 import json
 import re
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -13,8 +14,17 @@ from random import Random
 from typing import Any
 
 import cbor2
+from pygls.workspace import PositionCodec
 
-from jacaros.agents.language.diagnostics import render_all
+from jacaros.agents.language.diagnostics import SourceFile, render_all
+from jacaros.editors import symbols
+from jacaros.editors.lsp import fixes
+from jacaros.editors.lsp.answers import Answers
+from jacaros.editors.lsp.colours import colours
+from jacaros.editors.lsp.editing import formatting
+from jacaros.editors.lsp.outline import folds, outline_of
+from jacaros.editors.lsp.outline import symbols as symbols_in_outline
+from jacaros.editors.lsp.projects import Projects
 from jacaros.look.page.page import replay_html
 from jacaros.look.page.recorder import Recorder
 from jacaros.look.page.scene import RobotView
@@ -301,6 +311,58 @@ def _read_world(path: Path, _: bytes) -> None:
     json.dumps(load_world(str(path)).drawing())
 
 
+@cache
+def _projects_in(folder: Path) -> Projects:
+    return Projects([folder])
+
+
+def _ask_as_editor(path: Path, data: bytes) -> object:
+    """Ask the language server's functions everything about a text that is not saved."""
+    path = path.resolve()
+    text = data.decode("utf-8", "replace").replace("\r\n", "\n").replace("\r", "\n")
+    projects = _projects_in(path.parent)
+    found = projects.update([path], {path: text})
+    projects.index({path: text})
+    units = projects.units_of(path)
+    index = next((each.index for each in units if each.index is not None), symbols.Index())
+    file = SourceFile(units[0].name_of(path) if units else path.as_posix(), text)
+    told = []
+    for each in found.get(path, ()):
+        told += [action.title for action in fixes.actions(each, "uri", _CODEC, path.suffix == ".asl")]
+    answers = Answers(file, _CODEC)
+    outline = outline_of(file)
+    told.append(
+        repr((symbols_in_outline(outline, answers.positions), folds(file, outline), formatting(file)))
+    )
+    if path.suffix == ".asl":
+        told.append(repr((colours(file, answers.positions), symbols.hints(index, file))))
+    _ask_at_places(index, file, answers)
+    return "".join(told)[:LONGEST]
+
+
+def _ask_at_places(index: symbols.Index, file: SourceFile, answers: Answers) -> None:
+    random = Random(len(file.text))
+    for _ in range(8):
+        line = random.randint(1, len(file.lines))
+        at = symbols.Position(line, random.randint(1, len(file.lines[line - 1]) + 1))
+        if file.name.endswith(".asl"):
+            proposals = symbols.completions(index, file, at)
+        else:
+            proposals = symbols.yaml_completions(file, at)
+            symbols.yaml_hover(file, at)
+        for proposal in proposals:
+            answers.completion(proposal)
+        if file.name.endswith((".yaml", ".yml")):
+            continue
+        symbols.hover(index, file, at)
+        answers.places(symbols.definitions(index, file, at))
+        answers.places(each.span for each in symbols.references(index, file, at))
+        symbols.highlights(index, file, at)
+        with suppress(symbols.RenameRefused):
+            answers.edit(symbols.rename(index, file, at, "other_name"))
+
+
+_CODEC = PositionCodec()
 _PARAMETERS = (
     b"/**:\n  ros__parameters:\n    speed: 0.4\n    places: [hall, kitchen]\n",
     b"robot:\n  guard:\n    ros__parameters: {wheels: {left: {radius: 0.1}, right: &r {radius: 0.1}}, other: *r}\n",
@@ -390,12 +452,21 @@ def _read_frame(_: Path, data: bytes) -> str:
     return "".join(told)
 
 
+def _mappings_and_worlds() -> list[bytes]:
+    return list(_files("src/jacaros/robots/mappings/*.yaml", "src/jacaros/robots/world/worlds/*.yaml"))
+
+
 KINDS = {
     "asl": FileKind(".asl", _programs, _read_program),
     "jcm": FileKind(".jcm", lambda: _files("examples/**/*.jcm", "tests/**/*.jcm"), _read_project),
     "mas2j": FileKind(
         ".mas2j", lambda: _files("examples/**/*.mas2j", "tests/compatibility/*.mas2j"), _read_project
     ),
+    "edited-asl": FileKind(".asl", _programs, _ask_as_editor),
+    "edited-jcm": FileKind(
+        ".jcm", lambda: _files("examples/**/*.jcm", "tests/compatibility/*.jcm"), _ask_as_editor
+    ),
+    "edited-yaml": FileKind(".yaml", _mappings_and_worlds, _ask_as_editor),
     "mapping": FileKind(".yaml", lambda: _files("src/jacaros/robots/mappings/*.yaml"), _read_mapping),
     "world": FileKind(".yaml", lambda: _files("src/jacaros/robots/world/worlds/*.yaml"), _read_world),
     "parameters": FileKind(".yaml", lambda: _PARAMETERS, _read_parameters),

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from lsprotocol import types
-from pytest_lsp import LanguageClient
+from pytest_lsp import LanguageClient, client_capabilities
 
-SECONDS = 60.0
+SECONDS = 30.0
 """How long the tests wait for an answer on a busy machine."""
 
 
@@ -86,14 +86,8 @@ async def _session(
         await editor.heard()
 
     await client.start_io(sys.executable, "-m", "jacaros", "lsp", cwd=folder)
-    capabilities = types.ClientCapabilities(
-        general=types.GeneralClientCapabilities(position_encodings=encodings),
-        text_document=types.TextDocumentClientCapabilities(
-            completion=types.CompletionClientCapabilities(
-                completion_item=types.ClientCompletionItemOptions(snippet_support=True)
-            )
-        ),
-    )
+    capabilities = client_capabilities("visual-studio-code")
+    capabilities.general = types.GeneralClientCapabilities(position_encodings=encodings)
     folders = [types.WorkspaceFolder(editor.folder.as_uri(), folder.name)]
     params = types.InitializeParams(capabilities=capabilities, workspace_folders=folders)
     try:
@@ -102,4 +96,6 @@ async def _session(
         await use(editor)
         await asyncio.wait_for(client.shutdown_session(), SECONDS)
     finally:
+        if client._server is not None and client._server.returncode is None:
+            client._server.kill()  # the test has failed: stop() would wait for the server
         await client.stop()

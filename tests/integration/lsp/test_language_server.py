@@ -16,7 +16,8 @@ at(kitchen).
 near(X) :- at(X).
 !start.
 
-@begin +!start : near(kitchen)
+@begin
++!start : near(kitchen)
   <- !go(home);
      .print("𝄞", unknown_word).
 
@@ -53,7 +54,7 @@ def test_reports_errors_as_you_type(folder: Path) -> None:
         assert (found.code, found.source, unused.code) == ("unknown-goal", "jacaros", "goal-never-posted")
         assert unused.tags == (types.DiagnosticTag.Unnecessary,)
         assert found.message == "no plan for `!goo/1`\nhelp: did you mean `!go`?"
-        assert found.range == types.Range(types.Position(7, 6), types.Position(7, 15))
+        assert found.range == types.Range(types.Position(8, 6), types.Position(8, 15))
         editor.edit("robot.asl", PROGRAM)
         await editor.until(lambda: not editor.diagnostics("robot.asl"))
 
@@ -63,9 +64,9 @@ def test_reports_errors_as_you_type(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("encoding", "character"),
     [
-        (types.PositionEncodingKind.Utf8, 19),
-        (types.PositionEncodingKind.Utf16, 17),
-        (types.PositionEncodingKind.Utf32, 16),
+        (types.PositionEncodingKind.Utf8, 21),
+        (types.PositionEncodingKind.Utf16, 19),
+        (types.PositionEncodingKind.Utf32, 18),
     ],
 )
 def test_columns_count_in_the_negotiated_unit(
@@ -79,16 +80,17 @@ def test_columns_count_in_the_negotiated_unit(
         found = next(
             each for each in editor.diagnostics("robot.asl") if each.code == "unknown-internal-action"
         )
-        assert found.range.start.character == character + 1
+        assert found.range.start.character == character
         params = types.CodeActionParams(
             editor.document("robot.asl"), found.range, types.CodeActionContext([found])
         )
         actions = await editor.client.text_document_code_action_async(params)
         assert actions is not None
-        assert isinstance(actions[0], types.CodeAction)
-        assert actions[0].edit is not None
-        assert actions[0].edit.changes is not None
-        (edit,) = actions[0].edit.changes[editor.uri("robot.asl")]
+        action = next(each for each in actions if each.title == "Change to `.print`")
+        assert isinstance(action, types.CodeAction)
+        assert action.edit is not None
+        assert action.edit.changes is not None
+        (edit,) = action.edit.changes[editor.uri("robot.asl")]
         assert edit == types.TextEdit(found.range, ".print")
 
     with_editor(folder, use, [encoding])
@@ -111,7 +113,7 @@ def test_answers_about_a_program(folder: Path) -> None:
         ]
 
         folds = await ask.text_document_folding_range_async(types.FoldingRangeParams(document)) or ()
-        assert {(each.start_line, each.end_line) for each in folds} == {(0, 1), (6, 8)}
+        assert {(each.start_line, each.end_line) for each in folds} == {(0, 1), (6, 9)}
 
         options = types.FormattingOptions(4, insert_spaces=True)
         edits = await ask.text_document_formatting_async(types.DocumentFormattingParams(document, options))
@@ -138,18 +140,18 @@ def test_names_of_the_project(folder: Path) -> None:
         text = PROGRAM + "+!x <- !"
         await editor.open(name, text)
         await editor.until(lambda: bool(editor.diagnostics(name)))
-        while not (shown := await ask.text_document_hover_async(types.HoverParams(**editor.at(name, 7, 6)))):
+        while not (shown := await ask.text_document_hover_async(types.HoverParams(**editor.at(name, 8, 6)))):
             pass
         assert "!go(Place)" in str(shown.contents)
-        places = await ask.text_document_definition_async(types.DefinitionParams(**editor.at(name, 7, 6)))
-        assert [each.range.start.line for each in places or ()] == [10]
+        places = await ask.text_document_definition_async(types.DefinitionParams(**editor.at(name, 8, 6)))
+        assert [each.range.start.line for each in places or ()] == [11]
         context = types.ReferenceContext(include_declaration=True)
         found = await ask.text_document_references_async(
-            types.ReferenceParams(context=context, **editor.at(name, 7, 6))
+            types.ReferenceParams(context=context, **editor.at(name, 8, 6))
         )
-        assert [each.range.start.line for each in found or ()] == [7, 10]
+        assert [each.range.start.line for each in found or ()] == [8, 11]
         edit = await ask.text_document_rename_async(
-            types.RenameParams(new_name="drive", **editor.at(name, 7, 6))
+            types.RenameParams(new_name="drive", **editor.at(name, 8, 6))
         )
         assert edit is not None
         assert edit.changes is not None
@@ -176,11 +178,11 @@ def test_a_recording_says_why_a_plan_did_not_run(folder: Path) -> None:
             each.command for each in lenses or () if each.command and each.command.command == "jacaros.why"
         ]
         assert [each.arguments for each in whys] == [
-            (editor.uri("robot.asl"), 7),
-            (editor.uri("robot.asl"), 11),
+            (editor.uri("robot.asl"), 8),
+            (editor.uri("robot.asl"), 12),
         ]
         told = await editor.client.workspace_execute_command_async(
-            types.ExecuteCommandParams("jacaros.explain", [editor.uri("robot.asl"), 11])
+            types.ExecuteCommandParams("jacaros.explain", [editor.uri("robot.asl"), 12])
         )
         assert str(told).startswith("run.jsonl: ")
         assert "!go(home)" in str(told)

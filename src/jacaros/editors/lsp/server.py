@@ -131,7 +131,7 @@ class Server(LanguageServer):
         is_first = await asyncio.to_thread(self.projects.index, self.texts())
         wanted = self.client_capabilities.workspace
         if is_first and wanted is not None and wanted.inlay_hint and wanted.inlay_hint.refresh_support:
-            await self.workspace_inlay_hint_refresh_async(None)
+            self.workspace_inlay_hint_refresh(None)  # the answer says nothing
 
     def _publish(self, found: Iterable[tuple[Path, list[Diagnostic]]]) -> None:
         for path, diagnostics in found:

@@ -196,7 +196,11 @@ def fmt(files: tuple[Path, ...], only_check: bool) -> int:
         if only_check:
             click.echo("".join(_difference(path, before, after)), nl=False)
         elif path == _STANDARD_INPUT:
-            click.echo(after.encode(), nl=False)
+            # Another program gets the text as it is, in UTF-8; a terminal obeys no character of it.
+            is_shown = sys.stdout.isatty()
+            click.echo(
+                after if is_shown else after.encode(), None if is_shown else beneath(sys.stdout), nl=False
+            )
         elif before != after:
             try:
                 _replace(path, after)

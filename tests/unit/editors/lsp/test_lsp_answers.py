@@ -32,7 +32,7 @@ def applied(text: str, edits: list[types.TextEdit]) -> str:
 @pytest.mark.parametrize(
     ("before", "title", "after"),
     [
-        ("!start.\n+!start <- !go.\n+!goo.", "Change to `!goo`", "!start.\n+!start <- !goo.\n+!goo."),
+        ("!start.\n+!start <- !go.\n+!goo.", "Change to `goo`", "!start.\n+!start <- !goo.\n+!goo."),
         ("!go.\n", "Add `+!go.`", "!go.\n\n+!go.\n"),
         ("p(1)\nq(2).", "Add `.`", "p(1).\nq(2)."),
         ("!a.\n+!a : p(1) and q(2).\np(1). q(2).", "Change to `&`", "!a.\n+!a : p(1) & q(2).\np(1). q(2)."),
