@@ -11,7 +11,7 @@
 # make experiment    all runs of docs/experiment.md, in about 25 minutes; rewrites their record, the page and its pictures
 # make reference     reference pages and pictures generated from the code
 # make vsix          the VS Code extension, editors/vscode/dist/jacaros.vsix; needs Node.js 18 or later with npm
-# make site          the documentation as a website in build/site
+# make site          the documentation as a website in build/site; after `make live` with the robot in it
 # make live          the pages on which programs run in a browser, in build/live; needs npm's registry
 # make release       wheel, source distribution and bill of materials (CycloneDX) in dist/, the same on every machine
 #

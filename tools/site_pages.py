@@ -85,9 +85,9 @@ def _adapt(text: str, source: Path, place: Path, places: dict[Path, Path]) -> st
     """Adapt the blocks of code of a text, and the links outside them."""
     parts, end = [], 0
     for fence in _FENCE.finditer(text):
-        parts += [_with_links(text[end : fence.start()], source, place, places), _block(fence)]
+        parts += [_prose(text[end : fence.start()], source, place, places), _block(fence)]
         end = fence.end()
-    return "".join(parts) + _with_links(text[end:], source, place, places)
+    return "".join(parts) + _prose(text[end:], source, place, places)
 
 
 def _section(name: str, anchor: str, place: Path, places: dict[Path, Path]) -> str:
@@ -111,7 +111,9 @@ def _block(fence: re.Match[str]) -> str:
     return f"{fence[1]}```{language}{shown}\n{fence[3]}{fence[1]}```"
 
 
-def _with_links(text: str, source: Path, place: Path, places: dict[Path, Path]) -> str:
+def _prose(text: str, source: Path, place: Path, places: dict[Path, Path]) -> str:
+    """Adapt what stands between blocks of code: links, and Markdown inside of HTML, which the code host reads as such."""
+    text = text.replace("<details>", '<details markdown="1">')
     return _LINK.sub(lambda found: found[1] + _link(found[2], source, place, places) + found[3], text)
 
 
