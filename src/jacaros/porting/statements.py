@@ -170,6 +170,8 @@ class Body:
 
     def _assignment(self, node: Node) -> Iterator[str]:
         sign = source(field(node, "operator"))
+        if field(node, "left").type not in ("identifier", "field_access", "array_access"):
+            raise Unported(node)
         given = value(field(node, "right"), self.scope)
         left = value(field(node, "left"), self.scope)
         if left.where or sign in (">>>=",) or (left.type.name == PROPERTY and sign != "="):
