@@ -59,8 +59,8 @@ def read(name: str, text: str) -> JavaFile:
     """
     for library in ("tree_sitter", "tree_sitter_java"):
         if find_spec(library) is None:
-            cure = help_line('pip install "jacaros[java]"')
-            raise UsageError(f"error: port needs the Python package {library}\n{cure}")
+            help = help_line('pip install "jacaros[java]"')
+            raise UsageError(f"error: port needs the Python package {library}\n{help}")
     import tree_sitter_java
     from tree_sitter import Language, Parser
 

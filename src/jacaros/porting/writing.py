@@ -277,7 +277,7 @@ def _hint(kind: JavaType, initial: str) -> str:
 
 
 def _rules(code: str) -> str:
-    """Return the line that lets ruff accept loops and conditions written as Java does; empty if there are none."""
+    """Return the line that lets ruff accept loops and conditions written as Java does; empty without any."""
     found = set()
     for node in ast.walk(ast.parse(code)):
         if isinstance(node, ast.If) and not node.orelse and len(node.body) == 1:

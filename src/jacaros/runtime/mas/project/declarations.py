@@ -53,7 +53,7 @@ INFRASTRUCTURES: Final = Ignored(
 JAVA_ENVIRONMENT: Final = Ignored(
     "environments",
     "Java environments are not supported",
-    "write artifacts in Python, and declare `environment: jacaros.Environment`",
+    "port it with `jacaros port FILE.java`, and declare `environment: jacaros.Environment`",
 )
 ARCHITECTURES: Final = Ignored(
     "agent architectures",
