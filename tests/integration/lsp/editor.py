@@ -9,7 +9,7 @@ from typing import Any
 from lsprotocol import types
 from pytest_lsp import LanguageClient, client_capabilities
 
-SECONDS = 30.0
+SECONDS = 120.0
 """How long the tests wait for an answer on a busy machine."""
 
 
