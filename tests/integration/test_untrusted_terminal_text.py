@@ -69,6 +69,7 @@ RUNS: dict[str, list[list[str]]] = {
     "new": [["new", EVIL], ["new", "robot", "--template", EVIL]],
     "mcp": [["mcp", EVIL]],
     "dap": [["dap", EVIL]],
+    "lsp": [["lsp", EVIL]],
     "achieve": [["achieve", EVIL, *NOWHERE], ["achieve", EVIL, "go", *NOWHERE]],
     "ask": [["ask", EVIL, *NOWHERE], ["ask", "p(X)", "--url", EVIL, "--token", EVIL]],
     "tell": [["tell", EVIL, *NOWHERE]],
@@ -104,7 +105,7 @@ def outputs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
         "tests.asl": TESTS,
         "w.yaml": WORLD,
         "m.yaml": MAPPING,
-        "Evil.java": f'class Evil extends Artifact {{ {EVIL}',
+        "Evil.java": f"class Evil extends Artifact {{ {EVIL}",
         "damaged.jsonl": f'{{"kind": "world", "version": 2, "world": {{"name": "{JSON_EVIL}"}}}}\n{EVIL}\n',
     }
     for name, text in files.items():

@@ -9,6 +9,7 @@ from editor import Editor, with_editor
 from lsprotocol import types
 
 ROOT = Path(__file__).parents[3]
+SUFFIXES = (".asl", ".jcm", ".mas2j", ".yaml")
 PROGRAM = """\
 // A robot that
 // goes home.
@@ -188,3 +189,40 @@ def test_a_recording_says_why_a_plan_did_not_run(folder: Path) -> None:
         assert "!go(home)" in str(told)
 
     with_editor(folder, use)
+
+
+def programs() -> list[str]:
+    """The programs and projects of this repository."""
+    folders = ("examples", "tests", "src/jacaros/agents/language/library")
+    found = [
+        each for folder in folders for suffix in SUFFIXES for each in (ROOT / folder).rglob(f"*{suffix}")
+    ]
+    return sorted(each.relative_to(ROOT).as_posix() for each in found)
+
+
+@pytest.mark.slow
+def test_answers_about_all_programs_of_the_repository() -> None:
+    """Each is opened, cut in the middle of a word, asked about and closed."""
+
+    async def use(editor: Editor) -> None:
+        ask = editor.client
+        for name in programs():
+            document = editor.document(name)
+            text = (ROOT / name).read_text(encoding="utf-8")
+            cut = text[: 2 * len(text) // 3].rstrip()
+            line, character = cut.count("\n"), len(cut.rpartition("\n")[2])
+            await editor.open(name, cut)
+            await ask.text_document_completion_async(
+                types.CompletionParams(**editor.at(name, line, character))
+            )
+            await ask.text_document_hover_async(types.HoverParams(**editor.at(name, line, character)))
+            await ask.text_document_semantic_tokens_full_async(types.SemanticTokensParams(document))
+            await ask.text_document_document_symbol_async(types.DocumentSymbolParams(document))
+            await ask.text_document_folding_range_async(types.FoldingRangeParams(document))
+            await ask.text_document_code_lens_async(types.CodeLensParams(document))
+            editor.close(name)
+        await editor.open("robot.asl", "!go.")
+        await editor.until(lambda: bool(editor.diagnostics("robot.asl")))
+        assert [each.message for each in ask.log_messages] == []
+
+    with_editor(ROOT, use)

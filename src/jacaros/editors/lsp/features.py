@@ -187,19 +187,19 @@ def _actions(ls: Server, uri: str, found: list[Any]) -> Iterator[types.CodeActio
 
 def _commands(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_CODE_LENS)
-    def lensed(ls: Server, params: types.CodeLensParams) -> list[types.CodeLens]:
+    async def lensed(ls: Server, params: types.CodeLensParams) -> list[types.CodeLens]:
         answers = ls.answers(params.text_document.uri)
         path = path_of(params.text_document.uri)
         if path is None or not answers.file.name.endswith((PROGRAM, *PROJECTS)):
             return []
-        is_recorded = lenses.last_recording(ls.folders_of(path)) is not None
-        return list(lenses.lenses(path, outline_of(answers.file), answers.positions, is_recorded))
+        recording = await ls.last_recording(path)
+        return list(lenses.lenses(path, outline_of(answers.file), answers.positions, recording is not None))
 
     @server.command(lenses.EXPLAIN)
     async def explained(ls: Server, uri: str, line: int) -> str:
         """Return why the plan at a line did not run in the last recording."""
         path = path_of(uri)
-        recording = lenses.last_recording(ls.folders_of(path)) if path is not None else None
+        recording = await ls.last_recording(path) if path is not None else None
         if path is None or recording is None:
             return "no recording found; `jacaros run FILE --record run.jsonl` makes one"
         return await asyncio.to_thread(lenses.explain_plan, recording, path, line)

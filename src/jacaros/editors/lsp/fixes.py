@@ -69,11 +69,14 @@ def _replaced(span: Span, name: str) -> tuple[Span, str] | None:
     word = next((each for each in words if each["name"] == wanted), None)
     if word is None:
         return None
+    if word["name"] == meant["name"] and not meant["mark"]:
+        return None
     whole = _part(span, word.start("name"), word.end())
-    mark = _MARK.search(span.file.lines[span.line - 1][: whole.column - 1])
-    marks = mark.group() if mark is not None else ""
-    if not meant["mark"] or marks.endswith(meant["mark"]):
-        return (whole, meant["name"]) if word["name"] != meant["name"] else None
+    found = _MARK.search(span.file.lines[span.line - 1][: whole.column - 1])
+    marks = found.group() if found is not None else ""
+    is_before = whole.column - len(marks) < span.column  # a goal is marked without its `!`
+    if not meant["mark"] or (is_before and marks.endswith(meant["mark"])):
+        return whole, meant["name"]
     return whole._replace(column=whole.column - len(marks)), name
 
 

@@ -1,6 +1,7 @@
 """The language server: takes the texts of an editor, and answers its questions."""
 
 import asyncio
+import time
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Final
@@ -11,6 +12,7 @@ from pygls.lsp.server import LanguageServer
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile
 from jacaros.editors.lsp.answers import Answers
 from jacaros.editors.lsp.diagnostics import as_shown
+from jacaros.editors.lsp.lenses import last_recording
 from jacaros.editors.lsp.membership import roots_of
 from jacaros.editors.lsp.positions import path_of, uri_of
 from jacaros.editors.lsp.projects import SUFFIXES, Projects
@@ -18,6 +20,8 @@ from jacaros.editors.symbols import Index, Position
 from jacaros.version import VERSION
 
 _WATCHED: Final = "**/*.{asl,jcm,mas2j,py,yaml,yml,jsonl,gz}"
+OFTEN: Final = 5.0
+"""Seconds between searches for recordings."""
 PAUSE: Final = 0.03
 """Seconds between an edit and the check, so that fast typing is checked less often."""
 
@@ -38,6 +42,7 @@ class Server(LanguageServer):
         self._nothing = Index()
         self._checking: asyncio.Task[None] | None = None
         self._watches = False
+        self._recordings: dict[tuple[Path, ...], tuple[float, Path | None]] = {}
 
     def begin(self) -> None:
         """Take the folders that are open in the editor."""
@@ -95,9 +100,14 @@ class Server(LanguageServer):
         found = self._found.get(path, []) if path is not None else []
         return [each for each in found if each.span is not None and each.span.file.lines == file.lines]
 
-    def folders_of(self, path: Path) -> Iterable[Path]:
-        """Return the folders that the project of a file is in."""
-        return roots_of(self.projects.roots, path)
+    async def last_recording(self, path: Path) -> Path | None:
+        """Return the newest recording in the folders of a file's project. They are searched every few seconds only."""
+        folders = tuple(roots_of(self.projects.roots, path))
+        searched, found = self._recordings.get(folders, (-OFTEN, None))
+        if time.monotonic() - searched >= OFTEN:
+            found = await asyncio.to_thread(last_recording, folders)
+            self._recordings[folders] = time.monotonic(), found
+        return found
 
     # Checking.
 
