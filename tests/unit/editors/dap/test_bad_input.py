@@ -1,6 +1,7 @@
 """What an editor, or a user, may do wrong."""
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -8,7 +9,7 @@ from dap_client import DapClient
 
 
 @pytest.fixture
-def client(tmp_path: Path):
+def client(tmp_path: Path) -> Iterator[DapClient]:
     with DapClient(tmp_path) as client:
         yield client
 

@@ -1,5 +1,6 @@
 """An editor launches a program, stops it at breakpoints, steps and looks."""
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -31,7 +32,7 @@ def program(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def client(tmp_path: Path):
+def client(tmp_path: Path) -> Iterator[DapClient]:
     with DapClient(tmp_path) as client:
         yield client
 
