@@ -41,7 +41,7 @@ def environment(tmp_path: Path) -> dict[str, str]:
     return {**os.environ, "PATH": path, "HOME": str(tmp_path), "XDG_CONFIG_HOME": str(tmp_path)}
 
 
-def test_neovim_shows_mistakes_with_their_cures(tmp_path: Path, environment: dict[str, str]) -> None:
+def test_neovim_shows_mistakes_with_their_fixes(tmp_path: Path, environment: dict[str, str]) -> None:
     neovim = shutil.which("nvim")
     assert neovim is not None
     start, probe, program = tmp_path / "init.lua", tmp_path / "probe.lua", tmp_path / "robot.asl"
