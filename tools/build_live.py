@@ -144,7 +144,7 @@ def file_of(place: str) -> tuple[str, str]:
     """Return name and text of a file of the repository, or of a block in one of its pages.
 
     Raises:
-        SystemExit: there is none.
+        SystemExit: the page has no such block.
     """
     path, _, block = place.partition("#")
     text = (ROOT / path).read_text(encoding="utf-8")

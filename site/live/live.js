@@ -83,6 +83,7 @@ class LiveProgram {
     root.classList.add("jl");
     const left = element("div", "jl-left", this.files, this.editor.root, this.bar, this.log);
     root.replaceChildren(element("div", "jl-both", left, this.stage));
+    this.editor.field.addEventListener("focus", () => python.begin(), { once: true });  // Python loads while the user edits
     this.editor.field.addEventListener("keydown", (event) => {
       if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) this.run();
     });
