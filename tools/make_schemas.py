@@ -11,6 +11,9 @@ from jacaros.editors.schemas import SCHEMAS
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "reference" / "schemas"
 
+PLACE = "https://raw.githubusercontent.com/jacaros/jacaros/main/docs/reference/schemas/"
+"""Where editors find them."""
+
 
 def main(folder: Path) -> None:
     """Write the schemas."""
@@ -18,6 +21,7 @@ def main(folder: Path) -> None:
     for name, schema in SCHEMAS.items():
         whole = {
             "$schema": "https://json-schema.org/draft/2020-12/schema",
+            "$id": f"{PLACE}{name}.json",
             "title": f"JaCaROS: {name}",
             **schema(),
         }

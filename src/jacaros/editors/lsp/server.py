@@ -2,6 +2,7 @@
 
 import asyncio
 import time
+import traceback
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Final
@@ -129,12 +130,12 @@ class Server(LanguageServer):
             changed, self._changed = [*self._changed], {}
             try:
                 found = await asyncio.to_thread(self.projects.update, changed, self.texts())
-            except Exception as defect:
-                text = f"internal error: {defect!r}; please file an issue with this program"
-                self.window_log_message(types.LogMessageParams(types.MessageType.Error, text))
-            else:
                 self._publish(found.items())
                 await self._index()
+            except Exception as defect:  # the next edit is checked all the same
+                traceback.print_exception(defect)
+                text = f"internal error: {defect!r}; please file an issue with this program"
+                self.window_log_message(types.LogMessageParams(types.MessageType.Error, text))
 
     async def _index(self) -> None:
         """Read the meaning of names again, after the diagnostics: a user waits for these."""
