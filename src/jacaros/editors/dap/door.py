@@ -3,8 +3,9 @@
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
+from jacaros.editors.dap.channel import Channel
 from jacaros.editors.dap.relay import PATH
-from jacaros.editors.dap.session import Channel, Session, Settings
+from jacaros.editors.dap.session import Session, Settings
 from jacaros.editors.dap.wire import Message
 from jacaros.runtime.mas.system import System
 from jacaros.serving.callers import RequestError

@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
-from jacaros.editors.dap.session import CAPABILITIES, Arguments, Channel
+from jacaros.editors.dap.channel import Arguments, Channel
+from jacaros.editors.dap.session import CAPABILITIES
 from jacaros.editors.dap.wire import Wire
 from jacaros.runtime.errors import UsageError
 

@@ -2,12 +2,12 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from itertools import count
 from typing import Any
 
 from jacaros.agents.language.diagnostics import one_line
 from jacaros.agents.language.offers import OPERATOR
 from jacaros.agents.mind.mind import Mind
+from jacaros.editors.dap.channel import Arguments, Body, Channel
 from jacaros.editors.dap.points import FILTERS, Points
 from jacaros.editors.dap.scopes import Scopes
 from jacaros.editors.dap.threads import Threads
@@ -23,11 +23,8 @@ from jacaros.serving.callers import Caller
 from jacaros.serving.questions import ask
 from jacaros.serving.service import service_of
 
-Arguments = Mapping[str, Any]
-Body = Mapping[str, Any] | None
 ENTRY = "entry"
 """Why a run is paused that waits for the editor's breakpoints, or is to stop before its first step."""
-Send = Callable[[Mapping[str, Any]], None]
 CAPABILITIES: Mapping[str, Any] = {
     "supportsConfigurationDoneRequest": True,
     "supportsConditionalBreakpoints": True,
@@ -43,38 +40,6 @@ CAPABILITIES: Mapping[str, Any] = {
 }
 
 _CATEGORIES = {"debug": "console", "info": "console"}
-
-
-class Channel:
-    """Numbers the messages to an editor.
-
-    Args:
-        send: sends a message; any thread may call it.
-    """
-
-    def __init__(self, send: Send) -> None:
-        self._send, self._numbers = send, count(1)
-
-    def event(self, name: str, **body: Any) -> None:
-        """Send an event."""
-        self._send({"seq": next(self._numbers), "type": "event", "event": name, "body": body})
-
-    def output(self, text: str, category: str) -> None:
-        """Show a text in the editor's console; the *category* is ``stdout``, ``stderr`` or ``console``."""
-        self.event("output", category=category, output=text)
-
-    def respond(self, request: Arguments, body: Body = None) -> None:
-        """Answer a request."""
-        self._respond(request, True, {} if body is None else {"body": body})
-
-    def refuse(self, request: Arguments, message: str) -> None:
-        """Answer a request that failed."""
-        error = {"id": 1, "format": message.replace("{", "(").replace("}", ")"), "showUser": True}
-        self._respond(request, False, {"message": message, "body": {"error": error}})
-
-    def _respond(self, request: Arguments, success: bool, more: Arguments) -> None:
-        about = {"request_seq": request.get("seq", 0), "command": request.get("command", "")}
-        self._send({"seq": next(self._numbers), "type": "response", "success": success, **about, **more})
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from jacaros.runtime.mas.system import System
 from jacaros.serving.stdio import claim
 
 if TYPE_CHECKING:
-    from jacaros.editors.dap.session import Channel
+    from jacaros.editors.dap.channel import Channel
     from jacaros.editors.dap.wire import Message, Wire
 
 _ALARMING = re.compile(r"\b(warning|error): ")
@@ -29,8 +29,8 @@ def command() -> int:
     Your editor starts this command. `launch` runs a program as `jacaros run` does; `attach` joins a run that was started
     with --serve. The run stops its robots and ends when the editor closes the standard input.
     """  # fmt: skip
+    from jacaros.editors.dap.channel import Channel
     from jacaros.editors.dap.opening import opening  # here: it imports much
-    from jacaros.editors.dap.session import Channel
     from jacaros.editors.dap.wire import Wire
 
     ends = claim()
