@@ -4,7 +4,6 @@ import { packed, unpacked } from "./sharing.js";
 
 const HERE = new URL(".", import.meta.url);
 const PATIENCE = 1500;  // milliseconds in which a run must end when asked to
-const SPEEDS = [1, 2, 5, 10];
 
 const COLLECTED = new Uint8Array([0, 97, 115, 109, 1, 0, 0, 0, 1, 3, 1, 95, 0]);  // a module that declares an empty struct
 
@@ -43,11 +42,11 @@ class Python {
     };
   }
 
-  run(owner, source, speed, port) {
+  run(owner, source, port) {
     this.owner?.leave();
     this.owner = owner;
     this.begin();
-    this.worker.postMessage({ run: source, speed }, [port]);
+    this.worker.postMessage({ run: source }, [port]);
   }
 
   stop() { this.worker?.postMessage({ stop: true }); }
@@ -71,11 +70,9 @@ class LiveProgram {
     this.files.setAttribute("aria-label", "Files");
     this.runs = button("▶ Run", () => this.run());
     this.stops = button("■ Stop", () => this.stop());
-    this.speed = element("select", "", ...SPEEDS.map((each) => new Option(`${each}×`, each)));
-    this.speed.setAttribute("aria-label", "Speed");
     this.status = element("span", "jl-status");
     this.status.setAttribute("role", "status");
-    this.bar = element("div", "jl-bar", this.runs, this.stops, this.speed, button("Reset", () => this.open(this.original)), button("Copy link", () => this.share()), this.status);
+    this.bar = element("div", "jl-bar", this.runs, this.stops, button("Reset", () => this.open(this.original)), button("Copy link", () => this.share()), this.status);
     this.log = element("pre", "jl-log");
     this.log.tabIndex = 0;
     this.log.setAttribute("aria-label", "Messages");
@@ -137,13 +134,13 @@ class LiveProgram {
 
   async run() {
     this.clear();
-    const source = this.source(), speed = Number(this.speed.value);
+    const source = this.source();
     this.began = performance.now();
     this.show("starting", python.worker ? "Starting …" : "Loading Python, about 27 MB, once …");
     python.begin();
     const channel = new MessageChannel();
     const inner = await this.frame();
-    python.run(this, source, speed, channel.port1);
+    python.run(this, source, channel.port1);
     inner.postMessage("run", location.origin === "null" ? "*" : location.origin, [channel.port2]);
   }
 

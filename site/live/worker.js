@@ -1,4 +1,4 @@
-// The worker that has Python and the run. Messages to it: {run: source, speed} with a port for the page, {stop: true}.
+// The worker that has Python and the run. Messages to it: {run: source} with a port for the page, {stop: true}.
 // Messages from it: {ready: seconds}, {begun: true} with the first record of a run, {posted: text} for its log and its end,
 // {failed: text}.
 import createPyodideModule from "./pyodide/pyodide.asm.mjs";
@@ -33,9 +33,9 @@ async function start() {
 
 /** A run, in turns of the worker's loop, so that messages come through. */
 class Turns {
-  constructor(page, { run, speed }, port) {
+  constructor(page, source, port) {
     this.port = port;
-    this.program = page.start(JSON.stringify(run), (text) => this.post(text), speed);
+    this.program = page.start(JSON.stringify(source), (text) => this.post(text));
     port.onmessage = ({ data }) => {
       this.program.receive(data);
       this.turn();
@@ -76,7 +76,7 @@ let turns = null;
 onmessage = async ({ data, ports: [port] }) => {
   try {
     const page = await started;
-    if (data.run) turns = new Turns(page, data, port);
+    if (data.run) turns = new Turns(page, data.run, port);
     else if (data.stop) turns?.stop();
   } catch (error) {
     postMessage({ failed: error.message });

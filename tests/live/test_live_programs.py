@@ -54,7 +54,6 @@ async def edit(page: Page, program: str) -> None:
 @in_browser
 async def test_the_robot_moves_and_its_mind_is_beside_it(page: Page, address: str) -> None:
     await show(page, address)
-    await page.evaluate(f"{LIVE}.speed.value = '10'")
     await started(page)
     await page.wait_for(f"{INSIDE}.includes('corner 1')", LONG)
     text = await page.evaluate(INSIDE)
