@@ -148,7 +148,8 @@ class LiveProgram {
   frame() {
     const frame = element("iframe", "jl-page");
     frame.title = "The robot, and what its agent thinks";
-    const dark = matchMedia("(prefers-color-scheme: dark)").matches || document.documentElement.dataset.theme === "dark" || document.body.dataset.mdColorScheme === "slate";
+    const scheme = document.body.dataset.mdColorScheme ?? document.documentElement.dataset.theme;
+    const dark = scheme ? scheme !== "default" && scheme !== "light" : matchMedia("(prefers-color-scheme: dark)").matches;
     frame.src = new URL(`page/inside.html#theme=${dark ? "dark" : "light"}`, HERE);
     const ready = new Promise((resolve) => {
       const hear = ({ source }) => {
