@@ -17,7 +17,7 @@ from typing import Final
 from jacaros.agents.checks.formulas import CONDITIONED, conditions, indicator_of, labelled
 from jacaros.agents.language import nodes
 from jacaros.agents.language.cursor import MOST_ASKED, is_slip_of
-from jacaros.agents.language.diagnostics import Diagnostic, Span, cure, problem
+from jacaros.agents.language.diagnostics import Diagnostic, Span, fix, problem
 from jacaros.agents.language.nodes import UNDECLARED, ByKind, Declaration, parts_of
 from jacaros.agents.language.term_parser import PERFORMATIVES
 from jacaros.agents.terms.functions import ARITIES
@@ -254,7 +254,7 @@ def _new_plan(goal: nodes.Literal) -> str:
     arguments = f"({', '.join('_' for _ in goal.arguments)})" if goal.arguments else ""
     lines = goal.span.file.lines
     end = Span(goal.span.file, len(lines), len(lines[-1]) + 1, len(lines), len(lines[-1]) + 1)
-    return cure(help, f"\n+{name}{arguments}.\n", end)
+    return fix(help, f"\n+{name}{arguments}.\n", end)
 
 
 def _is_reachable(namespace: str | nodes.Variable | None, own: str | nodes.Variable | None) -> bool:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final, NamedTuple, NoReturn
 
-from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span, cure
+from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span, fix
 from jacaros.agents.language.lexer import RESERVED, Token
 from jacaros.agents.language.nodes import Declaration, Section
 from jacaros.agents.terms.functions import is_function
@@ -92,7 +92,7 @@ def _bare_goal(tokens: Sequence[Token], index: int) -> Slip | None:
     if tokens[start].kind not in ("!", "?") or tokens[start + 1].kind != "atom":
         return None
     goal = f"{tokens[start].kind}{tokens[start + 1].text}"
-    help = cure(f"write `+{goal}`", f"+{tokens[start].kind}")
+    help = fix(f"write `+{goal}`", f"+{tokens[start].kind}")
     return Slip("missing-trigger", f"`{goal}` is a goal, not the trigger of a plan", help, tokens[start])
 
 
@@ -109,7 +109,7 @@ def _by_kind(tokens: Sequence[Token], index: int, before: Token) -> Slip | None:
         case "atom" if text in _WORDS and before.kind in _ENDS_OPERAND:
             help = _WORDS[text]
             if text in _SIGNS:
-                help = cure(help, _SIGNS[text])
+                help = fix(help, _SIGNS[text])
             return Slip("foreign-word", f"unknown keyword `{text}`", help)
         case "atom" | "variable" if before.text in _PYTHON and (
             index < 2 or tokens[index - 2].kind in (".", "}")
@@ -120,7 +120,7 @@ def _by_kind(tokens: Sequence[Token], index: int, before: Token) -> Slip | None:
             help = f"close the block that was opened at line {opener.line}, column {opener.column}"
             return Slip("unclosed-bracket", f"missing `}}` before `{text}`", help)
         case kind if kind in RESERVED:
-            help = cure(f"quote it as an atom: '{text}'", f"'{text}'")
+            help = fix(f"quote it as an atom: '{text}'", f"'{text}'")
             return Slip("reserved-word", f"reserved word `{text}` used as a name", help)
         case "!" if before.kind in ("&", ":-"):
             help = "a plan takes the first solution of its context; give rules conditions that exclude each other"
@@ -171,7 +171,7 @@ def _missing_blank(token: Token, before: Token) -> Slip | None:
     is_word = token.kind == "atom" and token.text.startswith(".")
     if not is_word or not _joined(before, token) or before.kind not in (")", "]", "atom"):
         return None
-    help = cure("put a blank or a line end after the final `.`", f". {token.text[1:]}")
+    help = fix("put a blank or a line end after the final `.`", f". {token.text[1:]}")
     return Slip("missing-blank", f"`{token.text}` is read as one word", help)
 
 
@@ -436,7 +436,7 @@ class Cursor:
             self.report(
                 "mismatched-bracket",
                 f"`{opener.kind}` is closed by `{token.kind}`",
-                help=cure(f"close it with `{closer}`; it was {where}", closer),
+                help=fix(f"close it with `{closer}`; it was {where}", closer),
                 opened=self.span_of(opener),
             )
             if not self._closes_outer(opener) or self.peek().kind == token.kind:
@@ -447,7 +447,7 @@ class Cursor:
             self.report(
                 "unclosed-bracket",
                 f"unclosed `{opener.kind}`: expected `{closer}`, found {self.found()}",
-                help=cure(f"close it with `{closer}`; it was {where}", closer, self.behind(self.previous())),
+                help=fix(f"close it with `{closer}`; it was {where}", closer, self.behind(self.previous())),
                 opened=self.span_of(opener),
             )
         raise SyntaxPanic

@@ -59,7 +59,7 @@ class Span(NamedTuple):
         return Span(self.file, self.line, self.column, other.end_line, other.end_column)
 
 
-class Cure(str):
+class Fix(str):
     """A help that an editor can carry out.
 
     Attributes:
@@ -71,9 +71,9 @@ class Cure(str):
     where: Span | None = None
 
 
-def cure(help: str, text: str, where: Span | None = None) -> Cure:
+def fix(help: str, text: str, where: Span | None = None) -> Fix:
     """Return a help with its edit: *text* replaces *where*, or the text that the diagnostic marks."""
-    found = Cure(help)
+    found = Fix(help)
     found.text, found.where = text, where
     return found
 

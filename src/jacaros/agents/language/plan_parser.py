@@ -12,7 +12,7 @@ from typing import Final
 
 from jacaros.agents.language import nodes
 from jacaros.agents.language.cursor import CLOSERS, SyntaxPanic
-from jacaros.agents.language.diagnostics import cure
+from jacaros.agents.language.diagnostics import fix
 from jacaros.agents.language.lexer import Token
 from jacaros.agents.language.term_parser import TermParser
 from jacaros.agents.terms.operators import BINARY
@@ -64,7 +64,7 @@ class PlanParser(TermParser):
             self.fail(
                 "wrong-separator",
                 "expected `&` between conditions, found `,`",
-                help=cure("write `&` for 'and'", "&"),
+                help=fix("write `&` for 'and'", "&"),
             )
         if kind not in _BEHIND_HEAD and not self.token.first and not self.at_plan():
             self.unexpected("`<-` or `.`")
@@ -133,7 +133,7 @@ class PlanParser(TermParser):
                 "missing-context",
                 "missing context after `:`",
                 self.span_of(colon),
-                cure("remove the `:`, or write `: true`", ""),
+                fix("remove the `:`, or write `: true`", ""),
             )
             return None
         context = self._part("context")
@@ -434,7 +434,7 @@ class PlanParser(TermParser):
                     "tested-action",
                     f"internal action `{formula.name}` cannot be a test goal",
                     formula.span,
-                    cure("remove the `?`", "", self.span_of(start)),
+                    fix("remove the `?`", "", self.span_of(start)),
                 )
             return nodes.Test(formula, span=self.span_from(start))
         if kind in ("+", "-", "^"):
@@ -449,7 +449,7 @@ class PlanParser(TermParser):
 
     def _without_semicolon(self) -> str:
         help, before = "remove the `;` before it", self.previous()
-        return cure(help, "", self.span_of(before)) if before.kind == ";" else help
+        return fix(help, "", self.span_of(before)) if before.kind == ";" else help
 
     def _goal(self) -> nodes.Literal | nodes.Variable:
         if self.token.kind not in ("atom", "variable", "~", "::"):
@@ -457,7 +457,7 @@ class PlanParser(TermParser):
         mark = self.span_of(self.previous())
         goal = self.operand(formula=True)
         if not isinstance(goal, nodes.Literal | nodes.Variable):
-            help = cure("remove the `!`", "", mark)
+            help = fix("remove the `!`", "", mark)
             self.fail("wrong-goal", "an internal action cannot be a goal", goal.span, help)
         return goal
 

@@ -5,7 +5,7 @@ from typing import Final, Protocol
 
 from jacaros.agents.language import nodes
 from jacaros.agents.language.cursor import CLOSERS, ProgramNames, SyntaxPanic
-from jacaros.agents.language.diagnostics import Cure, Diagnostic, SourceFile, Span, cure
+from jacaros.agents.language.diagnostics import Diagnostic, Fix, SourceFile, Span, fix
 from jacaros.agents.language.lexer import Token
 from jacaros.agents.language.nodes import UNDECLARED, parts_of
 from jacaros.agents.language.plan_parser import CONTROL, PlanParser
@@ -192,8 +192,8 @@ class ProgramParser(PlanParser):
             self.unexpected("a plan")
         section.plans.append(self._plan_clause())
 
-    def _final_dot(self, where: str) -> Cure:
-        return cure(f"put a `.` at the end of {where}", ".", self.behind(self.previous()))
+    def _final_dot(self, where: str) -> Fix:
+        return fix(f"put a `.` at the end of {where}", ".", self.behind(self.previous()))
 
     def _finish(self, what: str) -> None:
         """Parse the final '.' of a clause. If it is missing and the next line begins a clause, continue there."""
@@ -216,13 +216,13 @@ class ProgramParser(PlanParser):
             self.fail(
                 "wrong-separator",
                 "expected `&` between conditions, found `,`",
-                help=cure("write `&` for 'and'", "&"),
+                help=fix("write `&` for 'and'", "&"),
             )
         elif token.kind == ";" and what == "rule":
             self.fail(
                 "wrong-separator",
                 "expected `&` or `|` between conditions, found `;`",
-                help=cure("write `|` for 'or'", "|"),
+                help=fix("write `|` for 'or'", "|"),
             )
         elif token.kind in CLOSERS.values():
             self.fail("unopened-bracket", f"unmatched `{token.kind}`")

@@ -7,7 +7,7 @@ from typing import Final
 from lsprotocol import types
 from pygls.workspace import PositionCodec
 
-from jacaros.agents.language.diagnostics import Cure, Diagnostic, SourceFile, Span
+from jacaros.agents.language.diagnostics import Diagnostic, Fix, SourceFile, Span
 from jacaros.editors.lsp.diagnostics import as_shown
 from jacaros.editors.lsp.positions import Positions
 from jacaros.runtime.files.texts import Suggestion, close_matches
@@ -45,7 +45,7 @@ def edits_of(found: Diagnostic) -> Iterator[tuple[Span, str]]:
     """Yield the texts that the help of a diagnostic proposes, with the range that each replaces."""
     if found.span is None:
         return
-    if isinstance(found.help, Cure):
+    if isinstance(found.help, Fix):
         yield found.help.where or found.span, found.help.text
     if not isinstance(found.help, Suggestion):
         return

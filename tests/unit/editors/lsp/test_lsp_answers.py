@@ -47,7 +47,7 @@ def applied(text: str, edits: list[types.TextEdit]) -> str:
         ),
     ],
 )
-def test_the_cure_is_an_edit(tmp_path: Path, before: str, title: str, after: str) -> None:
+def test_the_fix_is_an_edit(tmp_path: Path, before: str, title: str, after: str) -> None:
     path = tmp_path / "a.asl"
     found = Projects([tmp_path]).update([path], {path: before})[path]
     actions = {action.title: action for each in found for action in fixes.actions(each, "a", CODEC, True)}
