@@ -39,9 +39,11 @@ HOSTS = {
     "localhost",
     "zenoh.io",
     "github.com",  # the repository itself, see REPOSITORY
+    "jacaros.github.io",  # the documentation as a site
     "json-schema.org",  # the name of its dialect
     "json.schemastore.org",  # the name of its schema
     "keepachangelog.com",
+    "raw.githubusercontent.com",  # the names of our schemas
     "semver.org",
     "www.apache.org",
     "www.eprosima.com",  # the name of an XML language

@@ -60,7 +60,7 @@ class Span(NamedTuple):
 
 
 class Fix(str):
-    """A help that an editor can carry out.
+    """A help that an editor can apply.
 
     Attributes:
         text: replaces the range `where`.
