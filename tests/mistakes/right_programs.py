@@ -68,7 +68,7 @@ def _of_page(
         for place, code, message in _alarms([folder / file], mappings):
             path = Path(place)
             within = path.relative_to(folder).as_posix() if path.is_relative_to(folder) else file
-            yield f"{name}:{within}", code, message
+            yield f"{name}:{within}", code, message.replace(f"{folder.name}/", "")
 
 
 def _alarms(paths: list[Path], mappings: tuple[str, ...] = ()) -> Iterator[Alarm]:

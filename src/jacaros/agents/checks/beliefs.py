@@ -18,6 +18,7 @@ from typing import Final
 
 from jacaros.agents.checks.flow import (
     Adder,
+    Columns,
     ProgramFlow,
     Reader,
     Value,
@@ -94,8 +95,9 @@ def mismatches(flow: ProgramFlow, adders: Mapping[str, Sequence[Adder]]) -> Iter
 def comparisons(flow: ProgramFlow, adders: Mapping[str, Sequence[Adder]]) -> Iterator[Diagnostic]:
     """Return warnings about values of beliefs that are compared with other kinds, or numbers in other units."""
     clauses = {id(each.clause): each.clause for each in flow.readers if is_own(each.literal)}
+    columns: Columns = {}
     for clause in clauses.values():
-        yield from _comparisons(clause, variables_of(clause, adders))
+        yield from _comparisons(clause, variables_of(clause, adders, columns))
 
 
 def unmet_goals(program: nodes.Program, adders: Mapping[str, Sequence[Adder]]) -> Iterator[Diagnostic]:
@@ -170,8 +172,8 @@ def capital_atoms(flow: ProgramFlow, adders: Mapping[str, Sequence[Adder]]) -> I
         for place, argument in enumerate(reader.literal.arguments if given else ()):
             name = argument.name if isinstance(argument, nodes.Variable) and not argument.unnamed else ""
             lower = name[:1].lower() + name[1:]
-            values = {place_of(each, place).options for each in given}
-            if name and values == {(lower,)} and nodes.occurrences(reader.clause).get(name) == 1:
+            is_only = name and all(place_of(each, place).options == (lower,) for each in given)
+            if is_only and nodes.occurrences(reader.clause).get(name) == 1:
                 message = f"`{name}` is a variable (capital {name[0]}), which matches any value"
                 yield problem("singleton-variable", message, argument.span, did_you_mean([lower]))
 
@@ -219,8 +221,8 @@ def _mismatch(reader: Reader, same: Sequence[Adder]) -> Iterator[Diagnostic]:
     literal = reader.literal
     for place, argument in enumerate(literal.arguments if same else ()):
         wanted = value_of(argument, {})
-        given = [place_of(each, place) for each in same]
-        if wanted.kind and not any(each.fits(wanted) for each in given):
+        if wanted.kind and not any(place_of(each, place).fits(wanted) for each in same):
+            given = [place_of(each, place) for each in same]
             kinds = {each.kind for each in given}
             if wanted.kind in kinds and (reader.denied or reader.how == "deletion"):
                 continue

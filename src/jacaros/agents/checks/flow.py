@@ -274,18 +274,33 @@ def merged(values: Iterable[Value]) -> Value:
     return Value(kinds.pop(), () if is_any else tuple(options), unit, all(each.whole for each in found))
 
 
-def variables_of(clause: nodes.Node, known: Mapping[str, Sequence[Adder]]) -> dict[str, Value]:
+Columns = dict[tuple[Key, int], Value]
+"""What is known of an argument of a belief, by the belief's key and the argument's place."""
+
+
+def variables_of(
+    clause: nodes.Node, known: Mapping[str, Sequence[Adder]], columns: Columns | None = None
+) -> dict[str, Value]:
     """Return what is known of the variables of a clause, from the beliefs that it reads.
 
     A variable that two beliefs give different kinds or units is unknown.
+
+    Args:
+        clause: a clause of the program.
+        known: all that can give beliefs, by name.
+        columns: what is known already, for several clauses with the same *known*.
     """
     found: dict[str, Value] = {}
+    columns = {} if columns is None else columns
     for literal in _given(clause):
-        adders = of_size(known, key_of(literal))
+        key = key_of(literal)
+        adders = of_size(known, key)
         for place, argument in enumerate(literal.arguments if adders else ()):
             if not isinstance(argument, nodes.Variable) or argument.annotations is not None:
                 continue
-            value = merged(place_of(each, place) for each in adders)
+            if (key, place) not in columns:
+                columns[key, place] = merged(place_of(each, place) for each in adders)
+            value = columns[key, place]
             before = found.setdefault(argument.name, value)
             if before != value:
                 found[argument.name] = merged((before, value))

@@ -505,11 +505,18 @@ def walk(*roots: object) -> Iterator[Node]:
     stack: list[object] = list(roots[::-1])
     while stack:
         part = stack.pop()
-        if isinstance(part, Node):
+        kind = part.__class__
+        if kind in _PLAIN:
+            continue
+        if isinstance(part, tuple):
+            stack += part[::-1]
+        elif isinstance(part, Node):
             yield part
             stack += part.parts()[::-1]
-        elif isinstance(part, tuple):
-            stack += part[::-1]
+
+
+_PLAIN = frozenset({str, type(None), bool, int, float})
+"""Classes of most parts: the checks of a program walk over each of them some forty times."""
 
 
 def rebuilt(node: Any, change: Callable[[Node], Any]) -> Any:
