@@ -33,7 +33,7 @@ def prepare() -> None:
     shutil.copytree(SITE / "overrides", WORK / "overrides")
     shutil.copytree(SITE / "assets", WORK / "pages" / "assets")
     shutil.copyfile(SITE / "literal_blocks.py", WORK / "literal_blocks.py")
-    copy_pages(WORK / "pages", LIVE.exists())
+    copy_pages(WORK / "pages")
     settings = (SITE / "mkdocs.yml").read_text(encoding="utf-8")
     settings = settings.replace(f"site_url: {ADDRESS}", f"site_url: {ADDRESS}{version()}/")
     if LIVE.exists():

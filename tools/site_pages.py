@@ -7,7 +7,6 @@ The site has only some of the repository's files, so every other link leads to t
 import os
 import re
 import shutil
-import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -61,14 +60,13 @@ def _is_shown(source: Path) -> bool:
     return source.suffix == ".md" or source.parent == Path("docs/images")
 
 
-def copy_pages(target: Path, live: bool) -> None:
-    """Write all pages and pictures to *target*; *live* adds the programs that run in the browser to the tutorials."""
+def copy_pages(target: Path) -> None:
+    """Write all pages and pictures to *target*."""
     places = sources()
     for source, place in places.items():
         (target / place).parent.mkdir(parents=True, exist_ok=True)
         if source.suffix == ".md":
-            text = page(source, places)
-            (target / place).write_text(_with_program(text, source) if live else text, encoding="utf-8")
+            (target / place).write_text(page(source, places), encoding="utf-8")
         else:
             shutil.copyfile(ROOT / source, target / place)
     for module in API:
@@ -81,26 +79,6 @@ def page(source: Path, places: dict[Path, Path]) -> str:
     text = (ROOT / source).read_text(encoding="utf-8")
     text = _adapt(text, source, places[source], places)
     return _SECTION.sub(lambda found: _section(found[1], found[2], places[source], places), text)
-
-
-def _with_program(text: str, source: Path) -> str:
-    """Add the program of a tutorial behind its block, to run it there; the landing page has a place of its own."""
-    if source.parent != Path("docs/tutorial"):
-        return text
-    programs = tomllib.loads((ROOT / "site/live/programs.toml").read_text(encoding="utf-8"))
-    for name, program in programs.items():
-        block = program["files"][0].removeprefix(f"{source.as_posix()}#")
-        element = (
-            f'\n\n<div data-jacaros-live="{name}" markdown="1">\n\nPress Run to see it here.\n\n</div>\n'
-        )
-        text = re.sub(
-            rf'(?s)^```\w+ title="{re.escape(block)}"\n.*?^```$',
-            rf"\g<0>{element}",
-            text,
-            count=1,
-            flags=re.M,
-        )
-    return text
 
 
 def _adapt(text: str, source: Path, place: Path, places: dict[Path, Path]) -> str:
