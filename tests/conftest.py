@@ -4,7 +4,6 @@ import gc
 import os
 import sys
 from collections.abc import Callable, Iterator
-from importlib.util import find_spec
 
 import hypothesis
 import pytest
@@ -30,9 +29,6 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         help="fail, do not skip, when websockets or roslibpy is missing",
     )
     group.addoption("--require-mqtt", action="store_true", help="fail, do not skip, without an MQTT broker")
-    if find_spec("pytest_asyncio") is None:
-        # pyproject.toml sets it for pytest-asyncio, which the environments with ROS do not have.
-        parser.addini("asyncio_default_fixture_loop_scope", "scope of an event loop", default="function")
 
 
 @pytest.fixture(autouse=True)

@@ -2,15 +2,30 @@
 
 import asyncio
 import sys
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from lsprotocol import types
-from pytest_lsp import LanguageClient, client_capabilities
+from lsprotocol import converters, types
+from pygls.lsp.client import LanguageClient
 
 SECONDS = 120.0
 """How long the tests wait for an answer on a busy machine."""
+
+SUPPORTED = {
+    "workspace": {
+        "didChangeWatchedFiles": {"dynamicRegistration": True},
+        "inlayHint": {"refreshSupport": True},
+        "workspaceEdit": {"documentChanges": True},
+    },
+    "textDocument": {
+        "completion": {"completionItem": {"snippetSupport": True, "documentationFormat": ["markdown"]}},
+        "codeAction": {"codeActionLiteralSupport": {"codeActionKind": {"valueSet": ["quickfix"]}}},
+        "documentSymbol": {"hierarchicalDocumentSymbolSupport": True},
+        "hover": {"contentFormat": ["markdown"]},
+    },
+}
+"""What VS Code says it supports, as far as it matters to a server."""
 
 
 class Editor:
@@ -18,6 +33,8 @@ class Editor:
 
     def __init__(self, folder: Path, client: LanguageClient) -> None:
         self.folder, self.client = folder.resolve(), client
+        self.published: dict[str, Sequence[types.Diagnostic]] = {}
+        self.logged: list[str] = []
         self.capabilities: types.ServerCapabilities | None = None
         self._versions: dict[str, int] = {}
         self._reported = asyncio.Condition()
@@ -47,7 +64,7 @@ class Editor:
         self.client.text_document_did_close(types.DidCloseTextDocumentParams(self.document(name)))
 
     def diagnostics(self, name: str) -> list[types.Diagnostic]:
-        return list(self.client.diagnostics.get(self.uri(name), ()))
+        return list(self.published.get(self.uri(name), ()))
 
     async def until(self, met: Callable[[], bool]) -> None:
         """Wait until diagnostics meet a condition."""
@@ -77,25 +94,44 @@ async def _session(
     use: Callable[[Editor], Awaitable[None]],
     encodings: list[types.PositionEncodingKind] | None,
 ) -> None:
-    client = LanguageClient()
+    client = LanguageClient("tests", "1")
     editor = Editor(folder, client)
+    registered = asyncio.Event()
+    ended = False
 
     @client.feature(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)
-    async def published(_: LanguageClient, params: types.PublishDiagnosticsParams) -> None:
-        client.diagnostics[params.uri] = params.diagnostics
+    async def published(params: types.PublishDiagnosticsParams) -> None:
+        editor.published[params.uri] = params.diagnostics
         await editor.heard()
 
+    @client.feature(types.WINDOW_LOG_MESSAGE)
+    def log(params: types.LogMessageParams) -> None:
+        editor.logged.append(params.message)
+
+    @client.feature(types.CLIENT_REGISTER_CAPABILITY)
+    def register(_: types.RegistrationParams) -> None:
+        registered.set()
+
+    @client.feature(types.WORKSPACE_INLAY_HINT_REFRESH)
+    def refresh(_: None) -> None:
+        """Ask for no hints again: tests ask when they want them."""
+
     await client.start_io(sys.executable, "-m", "jacaros", "lsp", cwd=folder)
-    capabilities = client_capabilities("visual-studio-code")
+    capabilities = converters.get_converter().structure(SUPPORTED, types.ClientCapabilities)
     capabilities.general = types.GeneralClientCapabilities(position_encodings=encodings)
     folders = [types.WorkspaceFolder(editor.folder.as_uri(), folder.name)]
-    params = types.InitializeParams(capabilities=capabilities, workspace_folders=folders)
     try:
-        result = await asyncio.wait_for(client.initialize_session(params), SECONDS)
+        result = await asyncio.wait_for(
+            client.initialize_async(types.InitializeParams(capabilities, workspace_folders=folders)), SECONDS
+        )
         editor.capabilities = result.capabilities
+        client.initialized(types.InitializedParams())
+        await asyncio.wait_for(registered.wait(), SECONDS)
         await use(editor)
-        await asyncio.wait_for(client.shutdown_session(), SECONDS)
+        await asyncio.wait_for(client.shutdown_async(None), SECONDS)
+        client.exit(None)
+        ended = True
     finally:
-        if client._server is not None and client._server.returncode is None:
-            client._server.kill()  # the test has failed: stop() would wait for the server
+        if not ended and client._server is not None:
+            client._server.kill()  # stop() would wait for the server
         await client.stop()
