@@ -145,11 +145,11 @@ class Session:
             self._own_request = False
 
     def begin(self) -> None:
-        """Ask for breakpoints. A run that the editor has launched begins when it has sent them."""
+        """Ask for breakpoints. A run that the editor has launched begins at `configurationDone`."""
         if self._settings.debug:
             self._system.keep_history()
-            if self._settings.launched:
-                self._debugger.pause(ENTRY)
+        if self._settings.launched:
+            self._debugger.pause(ENTRY)
         self._channel.event("initialized")
 
     def _begin_run(self) -> None:

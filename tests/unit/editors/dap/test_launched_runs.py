@@ -179,6 +179,18 @@ def test_a_run_stops_on_entry_pauses_and_is_terminated(client: DapClient, tmp_pa
     assert client.process.wait(60) == 0
 
 
+def test_a_run_without_debugging_begins_when_the_editor_is_ready(client: DapClient, program: Path) -> None:
+    client.ask("initialize", adapterID="jacaros")
+    client.send("launch", program=str(program), clock="fast", noDebug=True, args=["--until-idle"])
+    client.event("initialized")
+    for _ in range(100):
+        client.ask("setBreakpoints", source={"path": str(program)}, breakpoints=[])
+    assert "stdout" not in client.output
+    client.ask("configurationDone")
+    client.event("terminated")
+    assert "stdout" in client.output
+
+
 def test_a_run_without_debugging_only_shows_its_output(client: DapClient, program: Path) -> None:
     set_ = client.launch(program, [{"line": 6}], noDebug=True, args=["--until-idle"])
     assert set_ == []
