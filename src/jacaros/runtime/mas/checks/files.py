@@ -114,16 +114,20 @@ def _check_paths(paths: Sequence[Path], mappings: Sequence[str], findings: Findi
     for path in paths:
         if path.is_dir():
             _check_folder(path, findings)
-        elif path.suffix in PROJECTS:
-            _check_project(path, findings)
+            continue
+        own = findings.apart()  # so that the order of files changes nothing
+        if path.suffix in PROJECTS:
+            _check_project(path, own)
         elif path.suffix == ".py":
-            _check_python_agent(path, findings)
+            _check_python_agent(path, own)
         elif path.suffix in MAPPINGS:
-            _check_yaml(path, findings, named)
+            _check_yaml(path, own, named)
         elif mappings:
-            _check_program_with_mappings(path, mappings, findings)
+            _check_program_with_mappings(path, mappings, own)
         else:
-            _check_lone_program(path, findings)
+            _check_lone_program(path, own)
+        findings.diagnostics += own.diagnostics
+        findings.files |= own.files
 
 
 def _not_imported(file: Path) -> Diagnostic:
