@@ -85,7 +85,11 @@ class _Running:
         self.output = SimpleQueue[tuple[str, bool]]()
         self.tables = ""
         self.error: BaseException | None = None
-        self.stop: Callable[[], object] = lambda: None
+        self._stop: Callable[[], object] = lambda: None
+
+    def stop(self) -> None:
+        """End the run; may be called from another thread."""
+        self._stop()
 
     def run(self) -> None:
         try:
@@ -105,7 +109,7 @@ class _Running:
             seed=given.seed,
         )
         async with mas:
-            self.stop = partial(asyncio.get_running_loop().call_soon_threadsafe, mas.stop)
+            self._stop = partial(asyncio.get_running_loop().call_soon_threadsafe, mas.stop)
             mas.add_artifact_types(*self._types)
             with record(mas, self._file), suppress(RunEnded):
                 focus = _mapped(mas) if given.mappings and len(self._programs) == 1 else []

@@ -384,7 +384,9 @@ class Debugger:
             return "step" if wanted.what == what else ""
         if wanted.intention.dropped:
             return "step" if what == "step" else ""
-        return "step" if wanted.intention is intention and len(intention.frames) <= wanted.height else ""
+        if intention is None or intention is not wanted.intention:
+            return ""
+        return "step" if len(intention.frames) <= wanted.height else ""
 
     def _hold(
         self, agent: Circumstance, why: str, intention: Intention | None, event: Goal | None = None
