@@ -14,6 +14,7 @@ LANGUAGES = {
     "diff",
     "ebnf",
     "elisp",
+    "html",
     "java",
     "jcm",
     "json",
