@@ -11,7 +11,7 @@
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from math import pi
 from typing import Final
@@ -97,7 +97,8 @@ def comparisons(flow: ProgramFlow, adders: Mapping[str, Sequence[Adder]]) -> Ite
     clauses = {id(each.clause): each.clause for each in flow.readers if is_own(each.literal)}
     columns: Columns = {}
     for clause in clauses.values():
-        yield from _comparisons(clause, variables_of(clause, adders, columns))
+        if relations := list(nodes_in(nodes.Relation, clause)):
+            yield from _comparisons(relations, variables_of(clause, adders, columns))
 
 
 def unmet_goals(program: nodes.Program, adders: Mapping[str, Sequence[Adder]]) -> Iterator[Diagnostic]:
@@ -146,8 +147,8 @@ def _unmet(
 def unawaited(program: nodes.Program, adders: Mapping[str, Sequence[Adder]]) -> Iterator[Diagnostic]:
     """Return notes about test goals for one number of a measurement that no earlier step of the plan waits for."""
     for plan in filter(is_own, program.plans):
-        known = {each.functor for each in nodes_in(nodes.Literal, plan.trigger)}
-        for step in plan.body.steps if isinstance(plan.body, nodes.Body) else ():
+        steps = plan.body.steps if isinstance(plan.body, nodes.Body) else ()
+        for number, step in enumerate(steps):
             if isinstance(step, nodes.Achieve):
                 break  # its plans may wait
             if isinstance(step, nodes.Test) and isinstance(asked := step.formula, nodes.Literal):
@@ -156,13 +157,13 @@ def unawaited(program: nodes.Program, adders: Mapping[str, Sequence[Adder]]) -> 
                 is_measured = bool(given) and all(
                     each.kind == "number" and not each.options for each in given
                 )
-                if is_measured and asked.functor not in known:
+                before = nodes_in(nodes.Literal, (plan.trigger, *steps[:number])) if is_measured else ()
+                if is_measured and all(each.functor != asked.functor for each in before):
                     text = as_written(asked)
                     message = f"`?{text}` fails unless the value is exactly this one when it is tested"
                     yield problem(
                         "unawaited-value", message, step.span, f"wait for it before: `.wait({text})`"
                     )
-            known |= {each.functor for each in nodes_in(nodes.Literal, step)}
 
 
 def capital_atoms(flow: ProgramFlow, adders: Mapping[str, Sequence[Adder]]) -> Iterator[Diagnostic]:
@@ -321,8 +322,8 @@ _TURN: Final = 10.0
 """No comparison is with so many radians: that is more than a turn."""
 
 
-def _comparisons(clause: nodes.Node, variables: Mapping[str, Value]) -> Iterator[Diagnostic]:
-    for relation in nodes_in(nodes.Relation, clause) if variables else ():
+def _comparisons(relations: Iterable[nodes.Relation], variables: Mapping[str, Value]) -> Iterator[Diagnostic]:
+    for relation in relations:
         for variable, other in (relation.operands, relation.operands[::-1]):
             value = variables.get(variable.name) if isinstance(variable, nodes.Variable) else None
             if value is None or not value.kind:

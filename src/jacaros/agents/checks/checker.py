@@ -14,9 +14,10 @@ from typing import Final
 
 from jacaros.agents.checks.annotations import wrong_labels, wrong_needs, wrong_supervision
 from jacaros.agents.checks.flow import is_own
-from jacaros.agents.checks.formulas import clauses as clauses_of
 from jacaros.agents.checks.formulas import (
+    Clause,
     is_true,
+    ordered_atoms,
     singletons,
     singletons_of_facts,
     vain_comparisons,
@@ -131,8 +132,11 @@ def check(program: nodes.Program, known: KnownActions, errors: Sequence[Diagnost
     program = _sound(program, errors)
     warnings = _mistakes(program, known, errors)
     warnings += doubtful_values(program.found)
-    for clause in filter(is_own, clauses_of(program)):
-        warnings += singletons(clause)
+    clauses: list[tuple[Clause, nodes.ByKind]] = [*program.in_plans]
+    clauses += [(each, nodes.ByKind(each)) for each in program.beliefs if isinstance(each, nodes.Rule)]
+    for clause, found in clauses:
+        if is_own(clause):
+            warnings += singletons(clause, found)
     facts = (belief for belief in program.beliefs if not isinstance(belief, nodes.Rule))
     warnings += [*singletons_of_facts(facts, "belief"), *singletons_of_facts(program.goals, "goal")]
     if not errors:
@@ -158,7 +162,12 @@ def _mistakes(program: nodes.Program, known: KnownActions, errors: Sequence[Diag
         *wrong_supervision(program.goals, found),
         *wrong_needs(found),
     ]
-    for clause in filter(is_own, clauses_of(program)):
+    equating: list[Clause] = [each for each in program.beliefs if isinstance(each, nodes.Rule)]
+    for plan, below in program.in_plans:
+        if any(each.operator in ("=", "==") for each in below.of(nodes.Relation)):
+            equating.append(plan)
+    warnings += ordered_atoms(filter(is_own, found.of(nodes.Relation)))
+    for clause in filter(is_own, equating):
         warnings += vain_comparisons(clause)
     if not errors:
         warnings += goals_without_plan(program, found, known)

@@ -335,8 +335,8 @@ def _given(clause: nodes.Node) -> Iterator[nodes.Literal]:
         elif isinstance(node, nodes.And | nodes.Or):
             stack += [(each, asked) for each in node.operands]
         elif not isinstance(node, _SCOPES):
-            asked_here = set(map(id, conditions(node)))
-            stack += [(each, id(each) in asked_here) for each in children(node)]
+            asked_here = conditions(node)
+            stack += [(each, any(each is one for one in asked_here)) for each in children(node)]
 
 
 # Collecting.
@@ -447,10 +447,13 @@ class _Collector:
         self._push_parts(node, [each for each in children(node) if each is not without], at)
 
     def _push_parts(self, node: nodes.Node, below: Sequence[nodes.Node], at: _At) -> None:
-        asked = set(map(id, conditions(node)))
         plain = at._replace(asked=False) if at.asked else at
+        if not (asked := conditions(node)):
+            self._stack += [(each, plain) for each in reversed(below)]
+            return
         self._stack += [
-            (each, plain._replace(asked=True) if id(each) in asked else plain) for each in reversed(below)
+            (each, plain._replace(asked=True) if any(each is one for one in asked) else plain)
+            for each in reversed(below)
         ]
 
     def _react(self, trigger: nodes.Trigger) -> None:

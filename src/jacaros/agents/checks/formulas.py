@@ -42,21 +42,20 @@ CONDITIONED: Final[tuple[type[Any], ...]] = (
 """The kinds of nodes that have conditions, besides labels and goals with ``while`` and ``achieves``."""
 
 
-def conditions(node: nodes.Node) -> Iterator[nodes.Term]:
-    """Yield the conditions of *node* itself: contexts, tests, conditions of statements, rules, annotations."""
-    if isinstance(node, nodes.Plan):
-        if node.context is not None:
-            yield node.context
-        if node.goal_condition is not None:
-            yield node.goal_condition
-    elif isinstance(node, nodes.If | nodes.While | nodes.For):
-        yield node.condition
-    elif isinstance(node, nodes.Test):
-        yield node.formula
-    elif isinstance(node, nodes.Rule):
-        yield node.body
-    elif isinstance(node, nodes.Literal) and node.functor in ("while", "achieves"):
-        yield from node.arguments[:1]
+def conditions(node: nodes.Node) -> tuple[nodes.Term, ...]:
+    """Return the conditions of *node* itself: contexts, tests, conditions of statements, rules, annotations."""
+    match node:
+        case nodes.Literal():  # first: most nodes are literals
+            return node.arguments[:1] if node.functor in ("while", "achieves") else ()
+        case nodes.Plan():
+            return tuple([each for each in (node.context, node.goal_condition) if each is not None])
+        case nodes.If() | nodes.While() | nodes.For():
+            return (node.condition,)
+        case nodes.Test():
+            return (node.formula,)
+        case nodes.Rule():
+            return (node.body,)
+    return ()
 
 
 def indicator_of(node: nodes.Node) -> Key:
@@ -84,10 +83,9 @@ def in_order(root: nodes.Node) -> Iterator[tuple[nodes.Node, bool]]:
         node, asked = stack.pop()
         yield node, asked
         below = list(children(node))
-        roots = [id(condition) for condition in conditions(node)]
-        inherits = asked and isinstance(node, nodes.Connective)
-        step = isinstance(node, nodes.Constraint)
-        stack.extend((child, inherits or step or id(child) in roots) for child in reversed(below))
+        roots = conditions(node)
+        all_asked = isinstance(node, nodes.Constraint) or (asked and isinstance(node, nodes.Connective))
+        stack += [(each, all_asked or any(each is one for one in roots)) for each in reversed(below)]
 
 
 def is_true(formula: nodes.Term | None) -> bool:
@@ -277,28 +275,24 @@ _CONSTANTS: Final = {
 """Variables that are constants in other languages."""
 
 
-def singletons(clause: Clause) -> Iterator[Diagnostic]:
-    """Warn of variables that occur once in *clause*.
+def singletons(clause: Clause, found: nodes.ByKind) -> Iterator[Diagnostic]:
+    """Warn of variables that occur once in *clause*, whose nodes are *found*.
 
     One in a trigger (or in the head of a rule) may only document the argument: it causes no warning, but may be the name
     that a misspelt variable was meant to have.
     """
-    occurrences: Counter[str] = Counter()
-    first: dict[str, nodes.Variable] = {}
-    in_texts: set[str] = set()
-    atoms: dict[str, nodes.Literal] = {}
-    for node in walk(clause):
-        if isinstance(node, nodes.Variable) and not node.unnamed and not node.name.startswith("_"):
-            occurrences[node.name] += 1
-            first.setdefault(node.name, node)
-        elif isinstance(node, nodes.String):
-            # .puts and .term2string find variables in their texts.
-            in_texts.update(_WORD.findall(node.value))
-        elif isinstance(node, nodes.Literal) and not node.arguments:
-            atoms.setdefault(node.functor, node)
+    named = [each for each in found.of(nodes.Variable) if not each.unnamed and each.name[0] != "_"]
+    occurrences = Counter([each.name for each in named])
+    once = [name for name, count in occurrences.items() if count == 1]
+    if not once:
+        return
+    # .puts and .term2string find variables in their texts.
+    in_texts = {word for each in found.of(nodes.String) for word in _WORD.findall(each.value)}
+    once = [name for name in once if name not in in_texts]
+    first = {each.name: each for each in reversed(named)}
+    atoms = {each.functor: each for each in reversed(found.of(nodes.Literal)) if not each.arguments}
     what = "plan" if isinstance(clause, nodes.Plan) else "rule"
-    once = [name for name, count in occurrences.items() if count == 1 and name not in in_texts]
-    in_head = _in_head(clause) if once else ()
+    in_head = _in_head(clause)
     for number, name in enumerate(once):
         if name in _CONSTANTS:
             yield problem(
@@ -366,19 +360,19 @@ def _meant_variable(name: str, occurrences: Counter[str]) -> str:
 
 
 def vain_comparisons(clause: Clause) -> Iterator[Diagnostic]:
-    """Warn of comparisons that never hold (``X == 3`` with an unbound X, ``X = X + 1``) or ignore x (``x > 3``)."""
+    """Warn of comparisons that never hold: ``X == 3`` with an unbound X, ``X = X + 1``."""
     met: set[str] = set()
     for node, asked in in_order(clause):
-        if isinstance(node, nodes.Relation) and BINARY[node.operator].orders:
-            yield from _ordered_atom(node)
         if isinstance(node, nodes.Variable):
             met.add(node.name)
         elif asked and isinstance(node, nodes.Relation) and isinstance(node.left, nodes.Variable):
             yield from _vain(node, node.left, met)
 
 
-def _ordered_atom(relation: nodes.Relation) -> Iterator[Diagnostic]:
-    for atom, other in ((relation.left, relation.right), (relation.right, relation.left)):
+def ordered_atoms(relations: Iterable[nodes.Relation]) -> Iterator[Diagnostic]:
+    """Warn of comparisons that ignore the order of numbers: ``x > 3``."""
+    ordering = [each for each in relations if BINARY[each.operator].orders]
+    for atom, other in (sides for each in ordering for sides in (each.operands, each.operands[::-1])):
         if (
             isinstance(atom, nodes.Literal)
             and not atom.arguments

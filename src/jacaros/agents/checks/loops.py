@@ -39,17 +39,18 @@ def loops_without_wait(program: nodes.Program, found: ByKind, known: KnownAction
     """
     if any(call.name in _ENDING or known.of(call).changes_plans for call in found.of(nodes.InternalAction)):
         return
-    quick = _Quick(program, known)
+    quick = _Quick(program, found, known)
     for loop in found.of(nodes.While):
         lasts = is_true(loop.condition) or (_asks_beliefs(loop.condition) and not _changes(loop.body))
         if lasts and quick.are(loop.body.steps):
             yield _without_wait("this loop", loop)
-    reposts = _reposts(_by_event(program.plans), quick)
+    reposts = _reposts(quick.plans, quick)
     seen: set[_Event] = _ended(found)
     for own, plans in quick.plans.items():
         for plan in plans if own not in seen and own not in reposts else ():
-            changes = ByKind(plan.body).of(nodes.BeliefChange)
-            again = quick.raising(plan, quick.plans) if _takes_all(plan) and not changes else []
+            if not _takes_all(plan) or ByKind(plan.body).of(nodes.BeliefChange):
+                continue
+            again = quick.raising(plan, quick.plans)
             if any(isinstance(each, nodes.Achieve) and each.goal == plan.trigger.literal for each in again):
                 yield _without_wait(f"`!{own[1][1]}`", again[-1])
     event: _Event | None
@@ -81,20 +82,21 @@ def _reposts(plans: Mapping[_Event, list[nodes.Plan]], quick: "_Quick") -> dict[
     """Return the events that always lead to one of them, each with the step that raises the next one."""
     raised = {
         event: [
-            quick.raising(plan, plans) for plan in sorted(of_event, key=lambda each: not _takes_all(each))
+            [(_event_of(step), step) for step in quick.raising(plan, plans)]
+            for plan in sorted(of_event, key=lambda each: not _takes_all(each))
         ]
         for event, of_event in plans.items()
         if any(map(_takes_all, of_event))
     }
-    while True:
-        kept = {
-            event: [[step for step in steps if _event_of(step) in raised] for steps in of_plans]
-            for event, of_plans in raised.items()
-            if all(any(_event_of(step) in raised for step in steps) for steps in of_plans)
-        }
-        if len(kept) == len(raised):
-            return {event: of_plans[0][0] for event, of_plans in kept.items()}
-        raised = kept
+    shrinks = True
+    while shrinks:
+        shrinks = False
+        for event, of_plans in reversed(list(raised.items())):  # most goals are posted before their plans
+            raised[event] = [[each for each in steps if each[0] in raised] for steps in of_plans]
+            if not all(raised[event]):
+                del raised[event]
+                shrinks = True
+    return {event: of_plans[0][0][1] for event, of_plans in raised.items()}
 
 
 def _takes_all(plan: nodes.Plan) -> bool:
@@ -171,25 +173,24 @@ def _answers(fact: nodes.Literal, asked: nodes.Literal) -> bool:
 class _Quick:
     """Tells the steps that take no time and do not fail."""
 
-    def __init__(self, program: nodes.Program, known: KnownActions) -> None:
+    def __init__(self, program: nodes.Program, found: ByKind, known: KnownActions) -> None:
         self._known = known
         self.plans = _by_event(program.plans)
         self._asked: dict[_Event, bool] = {}
         facts = [each for each in program.beliefs if isinstance(each, nodes.Literal)]
-        gone = {
-            signature(each) for body in ByKind(program.plans).of(nodes.Body) for each in _taken_away(body)
-        }
+        gone = {signature(each) for body in found.of(nodes.Body) for each in _taken_away(body)}
         self._lasting = [each for each in facts if signature(each) not in gone]
 
     def raising(self, plan: nodes.Plan, plans: Mapping[_Event, object]) -> list[nodes.Step]:
         """Return the steps of a plan that raise events with plans and that only quick steps come before."""
         found: list[nodes.Step] = []
-        given = set(names_in(plan.trigger, plan.context))
         for step in plan.body.steps if isinstance(plan.body, nodes.Body) and not plan.subplans else ():
             if _event_of(step) in plans:
                 found.append(step)
             # A test with a value from elsewhere may fail.
-            asks_value = isinstance(step, nodes.Test) and not given.isdisjoint(names_in(step))
+            asks_value = isinstance(step, nodes.Test) and not set(
+                names_in(plan.trigger, plan.context)
+            ).isdisjoint(names_in(step))
             if asks_value or not self._is(step):
                 break
         return found
