@@ -17,7 +17,6 @@ import cbor2
 from pygls.workspace import PositionCodec
 
 from jacaros.agents.language.diagnostics import SourceFile, render_all
-from jacaros.editors import symbols
 from jacaros.editors.lsp import fixes
 from jacaros.editors.lsp.answers import Answers
 from jacaros.editors.lsp.colours import colours
@@ -25,6 +24,14 @@ from jacaros.editors.lsp.editing import formatting
 from jacaros.editors.lsp.outline import folds, outline_of
 from jacaros.editors.lsp.outline import symbols as symbols_in_outline
 from jacaros.editors.lsp.projects import Projects
+from jacaros.editors.symbols import navigation
+from jacaros.editors.symbols.completion import completions
+from jacaros.editors.symbols.descriptions import hover
+from jacaros.editors.symbols.hints import hints
+from jacaros.editors.symbols.index import Index
+from jacaros.editors.symbols.model import Position, RenameRefused
+from jacaros.editors.symbols.renaming import rename
+from jacaros.editors.symbols.yaml_keys import yaml_completions, yaml_hover
 from jacaros.look.page.page import replay_html
 from jacaros.look.page.recorder import Recorder
 from jacaros.look.page.scene import RobotView
@@ -324,7 +331,7 @@ def _ask_as_editor(path: Path, data: bytes) -> object:
     found = projects.update([path], {path: text})
     projects.index({path: text})
     units = projects.units_of(path)
-    index = next((each.index for each in units if each.index is not None), symbols.Index())
+    index = next((each.index for each in units if each.index is not None), Index())
     file = SourceFile(units[0].name_of(path) if units else path.as_posix(), text)
     told = []
     for each in found.get(path, ()):
@@ -335,31 +342,31 @@ def _ask_as_editor(path: Path, data: bytes) -> object:
         repr((symbols_in_outline(outline, answers.positions), folds(file, outline), formatting(file)))
     )
     if path.suffix == ".asl":
-        told.append(repr((colours(file, answers.positions), symbols.hints(index, file))))
+        told.append(repr((colours(file, answers.positions), hints(index, file))))
     _ask_at_places(index, file, answers)
     return "".join(told)[:LONGEST]
 
 
-def _ask_at_places(index: symbols.Index, file: SourceFile, answers: Answers) -> None:
+def _ask_at_places(index: Index, file: SourceFile, answers: Answers) -> None:
     random = Random(len(file.text))
     for _ in range(8):
         line = random.randint(1, len(file.lines))
-        at = symbols.Position(line, random.randint(1, len(file.lines[line - 1]) + 1))
+        at = Position(line, random.randint(1, len(file.lines[line - 1]) + 1))
         if file.name.endswith(".asl"):
-            proposals = symbols.completions(index, file, at)
+            proposals = completions(index, file, at)
         else:
-            proposals = symbols.yaml_completions(file, at)
-            symbols.yaml_hover(file, at)
+            proposals = yaml_completions(file, at)
+            yaml_hover(file, at)
         for proposal in proposals:
             answers.completion(proposal)
         if file.name.endswith((".yaml", ".yml")):
             continue
-        symbols.hover(index, file, at)
-        answers.places(symbols.definitions(index, file, at))
-        answers.places(each.span for each in symbols.references(index, file, at))
-        symbols.highlights(index, file, at)
-        with suppress(symbols.RenameRefused):
-            answers.edit(symbols.rename(index, file, at, "other_name"))
+        hover(index, file, at)
+        answers.places(navigation.definitions(index, file, at))
+        answers.places(each.span for each in navigation.references(index, file, at))
+        navigation.highlights(index, file, at)
+        with suppress(RenameRefused):
+            answers.edit(rename(index, file, at, "other_name"))
 
 
 _CODEC = PositionCodec()

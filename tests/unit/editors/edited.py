@@ -3,7 +3,8 @@
 from jacaros.agents.language.diagnostics import SourceFile
 from jacaros.agents.language.loader import read_program
 from jacaros.artifacts import Artifact, Atom, Out, operation
-from jacaros.editors.symbols import Index, Position
+from jacaros.editors.symbols.index import Index
+from jacaros.editors.symbols.model import Position
 
 
 class Wheels(Artifact):

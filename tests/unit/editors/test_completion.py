@@ -8,7 +8,11 @@ from edited import edited, opened
 
 from jacaros.agents.language.diagnostics import SourceFile
 from jacaros.agents.language.loader import read_program
-from jacaros.editors.symbols import Index, Position, completions, hover, occurrence_at
+from jacaros.editors.symbols.completion import completions
+from jacaros.editors.symbols.descriptions import hover
+from jacaros.editors.symbols.index import Index
+from jacaros.editors.symbols.model import Position
+from jacaros.editors.symbols.navigation import occurrence_at
 
 PROJECT = """battery(80).
 far(X) :- at(X) & not near(X, 2).

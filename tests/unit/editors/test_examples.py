@@ -7,7 +7,10 @@ import pytest
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import SourceFile
 from jacaros.agents.language.loader import read_program
-from jacaros.editors.symbols import Edit, Index, Position, Symbol, occurrence_at, rename
+from jacaros.editors.symbols.index import Index
+from jacaros.editors.symbols.model import Edit, Position, Symbol
+from jacaros.editors.symbols.navigation import occurrence_at
+from jacaros.editors.symbols.renaming import rename
 from jacaros.runtime.mas.agents.programs import SourcePath
 
 ROOT = Path(__file__).parents[3]

@@ -2,7 +2,8 @@
 
 from edited import edited
 
-from jacaros.editors.symbols import Hint, hints
+from jacaros.editors.symbols.hints import hints
+from jacaros.editors.symbols.model import Hint
 
 
 def shown(text: str, **lines: int) -> str:

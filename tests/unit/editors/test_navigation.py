@@ -5,16 +5,11 @@ from pathlib import Path
 import pytest
 from edited import edited
 
-from jacaros.editors.symbols import (
-    Index,
-    RenameRefused,
-    definitions,
-    highlights,
-    hover,
-    references,
-    renamable,
-    rename,
-)
+from jacaros.editors.symbols.descriptions import hover
+from jacaros.editors.symbols.index import Index
+from jacaros.editors.symbols.model import RenameRefused
+from jacaros.editors.symbols.navigation import definitions, highlights, references
+from jacaros.editors.symbols.renaming import renamable, rename
 from jacaros.robots.registry import type_finder
 from jacaros.runtime.files.python_modules import ProjectModules
 

@@ -4,7 +4,10 @@ import pytest
 from edited import edited, opened
 
 from jacaros.agents.language.diagnostics import SourceFile
-from jacaros.editors.symbols import Position, references, rename, yaml_completions
+from jacaros.editors.symbols.model import Position
+from jacaros.editors.symbols.navigation import references
+from jacaros.editors.symbols.renaming import rename
+from jacaros.editors.symbols.yaml_keys import yaml_completions
 
 PROJECT = """mas house {
     agent guard : guard.asl {

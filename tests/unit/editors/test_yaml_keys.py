@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from edited import opened
 
-from jacaros.editors.symbols import yaml_completions, yaml_hover
+from jacaros.editors.symbols.yaml_keys import yaml_completions, yaml_hover
 from jacaros.editors.symbols.yaml_places import place_in
 
 

@@ -1,4 +1,4 @@
-"""What `jacaros.editors.symbols` knows about a place, in the terms of the protocol."""
+"""What `jacaros.editors.symbols` knows about a place, and what the checker reports, in the terms of the protocol."""
 
 import re
 from collections.abc import Iterable
@@ -8,9 +8,10 @@ from typing import Final
 from lsprotocol import types
 from pygls.workspace import PositionCodec
 
-from jacaros.agents.language.diagnostics import SourceFile, Span
+from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span
 from jacaros.editors.lsp.positions import Positions, uri_of
-from jacaros.editors.symbols import Completion, Edit, Hint, Hover, Occurrence
+from jacaros.editors.symbols.model import Completion, Edit, Hint, Hover, Occurrence
+from jacaros.runtime.files.texts import printable
 from jacaros.runtime.mas.agents.programs import SourcePath
 
 _KINDS: Final = {
@@ -28,6 +29,16 @@ _KINDS: Final = {
 }
 _PLACE: Final = re.compile(r"\$\{\d+:(?P<text>[^}]*)\}|\$\d+|\\(?P<escaped>[$}\\])")
 _WRITES: Final = frozenset({"defines", "adds", "removes", "tells", "handles", "offers"})
+SOURCE: Final = "jacaros"
+_LEVELS: Final = {
+    "error": types.DiagnosticSeverity.Error,
+    "warning": types.DiagnosticSeverity.Warning,
+    "note": types.DiagnosticSeverity.Information,
+}
+_PAGE: Final = "https://github.com/jacaros/jacaros/blob/main/docs/reference/diagnostics.md"
+_UNUSED: Final = frozenset({"plan-never-selected", "goal-never-posted", "unused-handler", "unused-offer"})
+"""Codes about clauses without effect, which editors show in grey."""
+_START: Final = types.Range(types.Position(0, 0), types.Position(0, 0))
 
 
 class Answers:
@@ -41,14 +52,14 @@ class Answers:
 
     def __init__(self, file: SourceFile, codec: PositionCodec, has_snippets: bool = True) -> None:
         self.file, self._codec, self._has_snippets = file, codec, has_snippets
-        self.positions = Positions.of(file, codec)
+        self.positions = Positions(file, codec)
 
     def place(self, span: Span) -> types.Location | None:
         """Return a place in any file, also of the library; None in a text that is not in a file."""
         path = _path_of(span)
         if path is None:
             return None
-        return types.Location(uri_of(path), Positions.of(span.file, self._codec).range(span))
+        return types.Location(uri_of(path), Positions(span.file, self._codec).range(span))
 
     def places(self, spans: Iterable[Span]) -> list[types.Location]:
         """Return places in any files."""
@@ -99,9 +110,23 @@ class Answers:
         for each in edits:
             path = None if each.span.file.name.startswith("$") else _path_of(each.span)
             if path is not None:
-                where = Positions.of(each.span.file, self._codec).range(each.span)
+                where = Positions(each.span.file, self._codec).range(each.span)
                 changes.setdefault(uri_of(path), []).append(types.TextEdit(where, each.text))
         return types.WorkspaceEdit(changes)
+
+
+def as_shown(found: Diagnostic, codec: PositionCodec) -> types.Diagnostic:
+    """Return a diagnostic for the client. Its suggested fix is the last line of the message."""
+    help = f"\nhelp: {printable(found.help)}" if found.help else ""
+    return types.Diagnostic(
+        range=_START if found.span is None else Positions(found.span.file, codec).range(found.span),
+        message=printable(found.message) + help,
+        severity=_LEVELS[found.severity],
+        code=found.code or None,
+        code_description=types.CodeDescription(f"{_PAGE}#{found.code}") if found.code else None,
+        source=SOURCE,
+        tags=[types.DiagnosticTag.Unnecessary] if found.code in _UNUSED else None,
+    )
 
 
 def _without_places(snippet: str) -> str:

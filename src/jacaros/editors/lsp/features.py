@@ -2,26 +2,31 @@
 
 import asyncio
 from collections.abc import Iterator
-from typing import Any, Final
+from contextlib import contextmanager
+from typing import Final
 
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
-from jacaros.agents.language.diagnostics import Span
-from jacaros.editors import symbols
-from jacaros.editors.lsp import editing, fixes, lenses
-from jacaros.editors.lsp.answers import Answers
+from jacaros.editors.lsp import editing, fixes, lenses, outline
+from jacaros.editors.lsp.answers import as_shown
 from jacaros.editors.lsp.colours import LEGEND, colours
 from jacaros.editors.lsp.membership import PROGRAM
-from jacaros.editors.lsp.outline import folds, outline_of
-from jacaros.editors.lsp.outline import symbols as outline
 from jacaros.editors.lsp.positions import path_of
-from jacaros.editors.lsp.search import search
 from jacaros.editors.lsp.server import Server
-from jacaros.editors.symbols import RenameRefused
+from jacaros.editors.symbols import navigation, renaming, yaml_keys
+from jacaros.editors.symbols.completion import completions
+from jacaros.editors.symbols.descriptions import hover
+from jacaros.editors.symbols.hints import hints
+from jacaros.editors.symbols.model import RenameRefused
 from jacaros.runtime.mas.checks.files import MAPPINGS, PROJECTS
 
 _TRIGGERS: Final = ["!", "?", "+", "-", ".", "@", "(", "[", ":", " "]
+
+
+_OfDocument = (
+    types.DidOpenTextDocumentParams | types.DidChangeTextDocumentParams | types.DidCloseTextDocumentParams
+)
 
 
 class _Refused(JsonRpcException):
@@ -44,15 +49,9 @@ def _documents(server: Server) -> None:
         ls.begin()
 
     @server.feature(types.TEXT_DOCUMENT_DID_OPEN)
-    def opened(ls: Server, params: types.DidOpenTextDocumentParams) -> None:
-        ls.changed(path_of(params.text_document.uri))
-
     @server.feature(types.TEXT_DOCUMENT_DID_CHANGE)
-    def edited(ls: Server, params: types.DidChangeTextDocumentParams) -> None:
-        ls.changed(path_of(params.text_document.uri))
-
     @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
-    def closed(ls: Server, params: types.DidCloseTextDocumentParams) -> None:
+    def changed(ls: Server, params: _OfDocument) -> None:
         ls.changed(path_of(params.text_document.uri))
 
     @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
@@ -68,74 +67,72 @@ def _documents(server: Server) -> None:
 def _places(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_COMPLETION, types.CompletionOptions(trigger_characters=_TRIGGERS))
     def complete(ls: Server, params: types.CompletionParams) -> types.CompletionList:
-        answers, at = ls.asked(params.text_document.uri, params.position)
+        answers, index, at = ls.asked(params.text_document.uri, params.position)
         if answers.file.name.endswith(PROGRAM):
-            found = symbols.completions(ls.index_of(params.text_document.uri), answers.file, at)
+            found = completions(index, answers.file, at)
         else:
-            found = symbols.yaml_completions(answers.file, at)
+            found = yaml_keys.yaml_completions(answers.file, at)
         return types.CompletionList(False, [answers.completion(each) for each in found])
 
     @server.feature(types.TEXT_DOCUMENT_HOVER)
-    def hover(ls: Server, params: types.HoverParams) -> types.Hover | None:
-        answers, at = ls.asked(params.text_document.uri, params.position)
+    def hovered(ls: Server, params: types.HoverParams) -> types.Hover | None:
+        answers, index, at = ls.asked(params.text_document.uri, params.position)
         found = None
         if not answers.file.name.endswith(MAPPINGS):
-            found = symbols.hover(ls.index_of(params.text_document.uri), answers.file, at)
+            found = hover(index, answers.file, at)
         if found is None and not answers.file.name.endswith(PROGRAM):
-            found = symbols.yaml_hover(answers.file, at)
+            found = yaml_keys.yaml_hover(answers.file, at)
         return None if found is None else answers.hover(found)
 
     @server.feature(types.TEXT_DOCUMENT_DEFINITION)
     def definition(ls: Server, params: types.DefinitionParams) -> list[types.Location]:
-        answers, at = ls.asked(params.text_document.uri, params.position)
-        return answers.places(symbols.definitions(ls.index_of(params.text_document.uri), answers.file, at))
+        answers, index, at = ls.asked(params.text_document.uri, params.position)
+        return answers.places(navigation.definitions(index, answers.file, at))
 
     @server.feature(types.TEXT_DOCUMENT_REFERENCES)
     def references(ls: Server, params: types.ReferenceParams) -> list[types.Location]:
-        answers, at = ls.asked(params.text_document.uri, params.position)
-        index = ls.index_of(params.text_document.uri)
-        found = symbols.references(index, answers.file, at, params.context.include_declaration)
+        answers, index, at = ls.asked(params.text_document.uri, params.position)
+        found = navigation.references(index, answers.file, at, params.context.include_declaration)
         return answers.places(each.span for each in found)
 
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT)
     def highlight(ls: Server, params: types.DocumentHighlightParams) -> list[types.DocumentHighlight]:
-        answers, at = ls.asked(params.text_document.uri, params.position)
-        found = symbols.highlights(ls.index_of(params.text_document.uri), answers.file, at)
+        answers, index, at = ls.asked(params.text_document.uri, params.position)
+        found = navigation.highlights(index, answers.file, at)
         return [answers.highlight(each) for each in found]
 
 
 def _names(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_PREPARE_RENAME)
     def prepare(ls: Server, params: types.PrepareRenameParams) -> types.Range:
-        answers, at = ls.asked(params.text_document.uri, params.position)
-        try:
-            span = symbols.renamable(ls.index_of(params.text_document.uri), answers.file, at)
-        except RenameRefused as refused:
-            raise _refused(refused) from None
-        return answers.positions.range(span)
+        answers, index, at = ls.asked(params.text_document.uri, params.position)
+        with _refusals():
+            return answers.positions.range(renaming.renamable(index, answers.file, at))
 
     @server.feature(types.TEXT_DOCUMENT_RENAME, types.RenameOptions(prepare_provider=True))
     def rename(ls: Server, params: types.RenameParams) -> types.WorkspaceEdit:
-        answers, at = ls.asked(params.text_document.uri, params.position)
-        try:
-            edits = symbols.rename(ls.index_of(params.text_document.uri), answers.file, at, params.new_name)
-        except RenameRefused as refused:
-            raise _refused(refused) from None
-        return answers.edit(edits)
+        answers, index, at = ls.asked(params.text_document.uri, params.position)
+        with _refusals():
+            return answers.edit(renaming.rename(index, answers.file, at, params.new_name))
 
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
     def in_document(ls: Server, params: types.DocumentSymbolParams) -> list[types.DocumentSymbol]:
         answers = ls.answers(params.text_document.uri)
-        return outline(outline_of(answers.file), answers.positions)
+        return outline.symbols(outline.outline_of(answers.file), answers.positions)
 
     @server.feature(types.WORKSPACE_SYMBOL)
     async def in_workspace(ls: Server, params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:
         codec = ls.workspace.position_codec
-        return await asyncio.to_thread(search, ls.projects.roots, params.query, ls.texts(), codec)
+        return await asyncio.to_thread(outline.search, ls.projects.roots, params.query, ls.texts(), codec)
 
 
-def _refused(refused: RenameRefused) -> _Refused:
-    return _Refused(f"{refused.message}\nhelp: {refused.help}" if refused.help else refused.message)
+@contextmanager
+def _refusals() -> Iterator[None]:
+    """Show why a name cannot be changed."""
+    try:
+        yield
+    except RenameRefused as refused:
+        raise _Refused(f"{refused.message}\nhelp: {refused.help}") from None
 
 
 def _texts(server: Server) -> None:
@@ -148,7 +145,7 @@ def _texts(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_FOLDING_RANGE)
     def folded(ls: Server, params: types.FoldingRangeParams) -> list[types.FoldingRange] | None:
         file = ls.answers(params.text_document.uri).file
-        return None if file.name.endswith(MAPPINGS) else folds(file, outline_of(file))
+        return None if file.name.endswith(MAPPINGS) else outline.folds(file, outline.outline_of(file))
 
     @server.feature(types.TEXT_DOCUMENT_FORMATTING)
     def formatted(ls: Server, params: types.DocumentFormattingParams) -> list[types.TextEdit]:
@@ -161,28 +158,23 @@ def _texts(server: Server) -> None:
         if not answers.file.name.endswith(PROGRAM):
             return []
         first, last = params.range.start.line + 1, params.range.end.line + 1
-        found = symbols.hints(ls.index_of(params.text_document.uri), answers.file, first, last)
+        found = hints(ls.index_of(params.text_document.uri), answers.file, first, last)
         return [answers.hint(each) for each in found]
 
     @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, types.CodeActionOptions([types.CodeActionKind.QuickFix]))
     def fixed(ls: Server, params: types.CodeActionParams) -> list[types.CodeAction]:
         uri = params.text_document.uri
-        answers = ls.answers(uri)
-        found = ls.found_in(uri, answers.file)
-        wanted = [
-            each for each in found if each.span is not None and _touches(answers, each.span, params.range)
+        answers, codec = ls.answers(uri), ls.workspace.position_codec
+        return [
+            action
+            for each in ls.found_in(uri, answers.file)
+            if _touches(as_shown(each, codec).range, params.range)
+            for action in fixes.actions(each, uri, codec, uri.endswith(PROGRAM))
         ]
-        return list(_actions(ls, uri, wanted))
 
 
-def _touches(answers: Answers, span: Span, wanted: types.Range) -> bool:
-    place = answers.positions.range(span)
+def _touches(place: types.Range, wanted: types.Range) -> bool:
     return place.start.line <= wanted.end.line and wanted.start.line <= place.end.line
-
-
-def _actions(ls: Server, uri: str, found: list[Any]) -> Iterator[types.CodeAction]:
-    for each in found:
-        yield from fixes.actions(each, uri, ls.workspace.position_codec, uri.endswith(PROGRAM))
 
 
 def _commands(server: Server) -> None:
@@ -192,8 +184,8 @@ def _commands(server: Server) -> None:
         path = path_of(params.text_document.uri)
         if path is None or not answers.file.name.endswith((PROGRAM, *PROJECTS)):
             return []
-        recording = await ls.last_recording(path)
-        return list(lenses.lenses(path, outline_of(answers.file), answers.positions, recording is not None))
+        recording, entries = await ls.last_recording(path), outline.outline_of(answers.file)
+        return list(lenses.lenses(path, entries, answers.positions, recording is not None))
 
     @server.command(lenses.EXPLAIN)
     async def explained(ls: Server, uri: str, line: int) -> str:

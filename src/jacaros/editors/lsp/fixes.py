@@ -8,7 +8,7 @@ from lsprotocol import types
 from pygls.workspace import PositionCodec
 
 from jacaros.agents.language.diagnostics import Diagnostic, Fix, SourceFile, Span
-from jacaros.editors.lsp.diagnostics import as_shown
+from jacaros.editors.lsp.answers import as_shown
 from jacaros.editors.lsp.positions import Positions
 from jacaros.runtime.files.texts import Suggestion, close_matches
 
@@ -25,7 +25,7 @@ def actions(
     if span is None:
         return
     shown = as_shown(found, codec)
-    positions = Positions.of(span.file, codec)
+    positions = Positions(span.file, codec)
     edits = [*edits_of(found)]
     for where, text in edits:
         written = _text(where)

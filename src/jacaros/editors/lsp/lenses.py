@@ -9,10 +9,11 @@ from typing import Final
 from lsprotocol import types
 
 from jacaros.agents.language import nodes
+from jacaros.editors.lsp.membership import files_in
 from jacaros.editors.lsp.outline import Entry
 from jacaros.editors.lsp.positions import Positions, uri_of
 from jacaros.runtime.errors import JacarosError
-from jacaros.runtime.files.texts import files_below, shown_from
+from jacaros.runtime.files.texts import shown_from
 
 RUN: Final = "jacaros.run"
 TEST: Final = "jacaros.test"
@@ -55,25 +56,17 @@ def _is_test(label: nodes.Literal) -> bool:
 
 def last_recording(folders: Iterable[Path]) -> Path | None:
     """Return the newest recording in these folders, or None."""
-    found: dict[Path, float] = {}
-    for folder in folders:
-        try:
-            for path in files_below(folder, _RECORDINGS):
-                if _is_recording(path):
-                    found[path] = path.stat().st_mtime
-        except OSError:  # a folder that others must not read
-            continue
-    return max(found, key=lambda path: found[path], default=None)
+    found = [(path.stat().st_mtime, path) for path in files_in(folders, _RECORDINGS) if _is_recording(path)]
+    return max(found, default=(0.0, None))[1]
 
 
 def _is_recording(path: Path) -> bool:
-    """Return whether a file begins like a recording."""
+    """Return whether a file begins like a recording, and can be read."""
     from jacaros.look.records.line_format import MAGIC  # here: it imports much
 
-    with path.open("rb") as file:
-        packed = file.read(len(MAGIC)) == MAGIC
-    with gzip.open(path) if packed else path.open("rb") as file, suppress(EOFError):
-        return file.read(len(_BEGINNING)) == _BEGINNING
+    with suppress(EOFError, OSError), path.open("rb") as file:
+        packed = file.peek().startswith(MAGIC)
+        return (gzip.open(file) if packed else file).read(len(_BEGINNING)) == _BEGINNING
     return False
 
 

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
@@ -25,13 +26,14 @@ def roots_of(roots: Iterable[Path], file: Path) -> Iterator[Path]:
 
 def candidates(folders: Iterable[Path]) -> list[Path]:
     """Return the projects and programs below these folders."""
-    found: dict[Path, None] = {}
+    return list(dict.fromkeys(each.resolve() for each in files_in(folders, (*PROJECTS, PROGRAM))))
+
+
+def files_in(folders: Iterable[Path], suffixes: Sequence[str]) -> Iterator[Path]:
+    """Yield the files of these kinds below folders, as far as these can be read."""
     for folder in folders:
-        try:
-            found |= dict.fromkeys(each.resolve() for each in files_below(folder, (*PROJECTS, PROGRAM)))
-        except OSError:  # a folder that others must not read
-            continue
-    return list(found)
+        with suppress(OSError):  # a folder that others must not read
+            yield from files_below(folder, suffixes)
 
 
 def members(path: Path) -> set[Path]:

@@ -1,22 +1,27 @@
 """The parts of a program or project file, for outlines, folding and search."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Final
 
 from lsprotocol import types
+from pygls.workspace import PositionCodec
 
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span
 from jacaros.agents.language.lexer import Comment, tokenize
 from jacaros.agents.language.loader import read_program
 from jacaros.agents.language.lowering import format_term
-from jacaros.editors.lsp.positions import Positions
+from jacaros.editors.lsp.membership import PROGRAM, files_in
+from jacaros.editors.lsp.positions import Positions, uri_of
+from jacaros.runtime.files.texts import file_text, unsaved
 from jacaros.runtime.mas.checks.files import PROJECTS
 from jacaros.runtime.mas.project.declarations import ProjectPart
 from jacaros.runtime.mas.project.reading import reader_of
 
 _LONGEST: Final = 60
+_MOST: Final = 500
 
 
 @dataclass(frozen=True)
@@ -44,7 +49,7 @@ class Entry:
 
 def outline_of(file: SourceFile) -> list[Entry]:
     """Return the parts of a text, as far as it can be parsed; none of other kinds of files."""
-    if file.name.endswith(".asl"):
+    if file.name.endswith(PROGRAM):
         program, _ = read_program(file)
         return [each for each in _of_program(program) if each.span.file is file]
     if file.name.endswith(PROJECTS):
@@ -130,16 +135,12 @@ def folds(file: SourceFile, entries: list[Entry]) -> list[types.FoldingRange]:
     """Return the foldable ranges: clauses, blocks in braces of project files, and comments of several lines."""
     found = [
         types.FoldingRange(first - 1, last - 1)
-        for first, last in sorted({*_of_entries(entries), *_braces(file)})
+        for first, last in sorted(
+            {*((each.span.line, each.span.end_line) for each in _all(entries)), *_braces(file)}
+        )
         if last > first
     ]
     return [*found, *_of_comments(file)]
-
-
-def _of_entries(entries: list[Entry]) -> Iterator[tuple[int, int]]:
-    for each in entries:
-        yield each.span.line, each.span.end_line
-        yield from _of_entries(list(each.children))
 
 
 def _braces(file: SourceFile) -> Iterator[tuple[int, int]]:
@@ -164,3 +165,38 @@ def _of_comments(file: SourceFile) -> Iterator[types.FoldingRange]:
         if last > first:
             yield types.FoldingRange(first - 1, last - 1, kind=types.FoldingRangeKind.Comment)
         first, last = (comment.line, end) if own else (0, 0)
+
+
+def search(
+    roots: Iterable[Path], query: str, texts: Mapping[Path, str], codec: PositionCodec
+) -> list[types.WorkspaceSymbol]:
+    """Return the parts whose names contain the letters of the query in this order, at most 500."""
+    found: list[types.WorkspaceSymbol] = []
+    with unsaved({str(path): text for path, text in texts.items()}):
+        for path in files_in(roots, (PROGRAM, *PROJECTS)):
+            try:
+                file = SourceFile(path.as_posix(), file_text(path))
+            except (OSError, UnicodeError):
+                continue
+            positions = Positions(file, codec)
+            for entry in _all(outline_of(file)):
+                if fits(query, entry.name):
+                    where = types.Location(uri_of(path), positions.range(entry.chosen))
+                    found.append(
+                        types.WorkspaceSymbol(where, entry.name, entry.kind, container_name=path.name)
+                    )
+                    if len(found) == _MOST:
+                        return found
+    return found
+
+
+def fits(query: str, name: str) -> bool:
+    """Return whether a name contains the letters of a query in this order, in any case."""
+    letters = iter(name.lower())
+    return all(letter in letters for letter in query.lower())
+
+
+def _all(entries: Iterable[Entry]) -> Iterator[Entry]:
+    for each in entries:
+        yield each
+        yield from _all(each.children)

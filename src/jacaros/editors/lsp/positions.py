@@ -1,6 +1,5 @@
 """Places of our texts as places of an editor: lines from 0, columns in the units that were negotiated."""
 
-from collections.abc import Sequence
 from pathlib import Path
 
 from lsprotocol import types
@@ -25,17 +24,12 @@ class Positions:
     """Converts places in one text.
 
     Args:
-        lines: of the text, without their ends.
+        file: the text.
         codec: knows the client's unit of columns.
     """
 
-    def __init__(self, lines: Sequence[str], codec: PositionCodec) -> None:
-        self._lines, self._codec = lines, codec
-
-    @classmethod
-    def of(cls, file: SourceFile, codec: PositionCodec) -> "Positions":
-        """Return those of a text."""
-        return cls(file.lines, codec)
+    def __init__(self, file: SourceFile, codec: PositionCodec) -> None:
+        self._lines, self._codec = file.lines, codec
 
     def to_client(self, line: int, column: int) -> types.Position:
         """Return a place that counts from 1."""
@@ -52,14 +46,10 @@ class Positions:
 
     def from_client(self, place: types.Position) -> tuple[int, int]:
         """Return line and column, counted from 1; a place outside the text is moved to its nearest end."""
-        row = min(place.line, max(0, len(self._lines) - 1))
-        text = self._lines[row] if self._lines else ""
-        if place.line > row:
-            return row + 1, len(text) + 1
-        if text.isascii():
-            return row + 1, min(place.character, len(text)) + 1
-        left, column = place.character, 0
+        if place.line >= len(self._lines):
+            return len(self._lines), len(self._lines[-1]) + 1
+        text, left, column = self._lines[place.line], place.character, 0
         while left > 0 and column < len(text):
             left -= self._codec.client_num_units(text[column])
             column += 1
-        return row + 1, column + 1
+        return place.line + 1, column + 1

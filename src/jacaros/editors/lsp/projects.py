@@ -7,7 +7,7 @@ from pathlib import Path
 
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile
 from jacaros.editors.lsp.membership import PROGRAM, candidates, members, roots_of
-from jacaros.editors.symbols import Index
+from jacaros.editors.symbols.index import Index
 from jacaros.runtime.files.texts import file_text, unsaved
 from jacaros.runtime.mas.checks.files import MAPPINGS, PROJECTS, Checked, check_files
 from jacaros.runtime.mas.checks.observables import Observables

@@ -8,16 +8,17 @@ from pathlib import Path
 from typing import Final
 
 from lsprotocol import types
+from pygls.capabilities import get_capability
 from pygls.lsp.server import LanguageServer
 
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile
-from jacaros.editors.lsp.answers import Answers
-from jacaros.editors.lsp.diagnostics import as_shown
+from jacaros.editors.lsp.answers import Answers, as_shown
 from jacaros.editors.lsp.lenses import last_recording
 from jacaros.editors.lsp.membership import roots_of
 from jacaros.editors.lsp.positions import path_of, uri_of
 from jacaros.editors.lsp.projects import SUFFIXES, Projects
-from jacaros.editors.symbols import Index, Position
+from jacaros.editors.symbols.index import Index
+from jacaros.editors.symbols.model import Position
 from jacaros.version import VERSION
 
 _WATCHED: Final = "**/*.{asl,jcm,mas2j,py,yaml,yml,jsonl,gz}"
@@ -50,20 +51,21 @@ class Server(LanguageServer):
         folders = (path_of(each) for each in self.workspace.folders)
         root = path_of(self.workspace.root_uri or "")
         self.projects.roots = [each for each in (*folders, root) if each is not None]
-
         self._watch()
 
     def _watch(self) -> None:
         """Have the client report files that change outside the editor, or in other kinds of documents."""
-        wanted = self.client_capabilities.workspace
-        files = wanted.did_change_watched_files if wanted is not None else None
-        if files is None or not files.dynamic_registration or self._watches:
+        if self._watches or not self._can("workspace.did_change_watched_files.dynamic_registration"):
             return
         self._watches = True
         options = types.DidChangeWatchedFilesRegistrationOptions([types.FileSystemWatcher(_WATCHED)])
         kind = types.WORKSPACE_DID_CHANGE_WATCHED_FILES
         registration = types.Registration("jacaros-files", kind, options)
         self.client_register_capability(types.RegistrationParams([registration]))
+
+    def _can(self, capability: str) -> bool:
+        """Return whether the client has a capability."""
+        return bool(get_capability(self.client_capabilities, capability, False))
 
     def files_changed(self) -> None:
         """Check everything again: files have changed outside the editor."""
@@ -78,16 +80,13 @@ class Server(LanguageServer):
         text = self.workspace.get_text_document(uri).source.replace("\r\n", "\n").replace("\r", "\n")
         units = self.projects.units_of(path) if path is not None else []
         name = units[0].name_of(path) if path is not None and units else str(path or uri)
-        document = self.client_capabilities.text_document
-        completion = document.completion if document is not None else None
-        item = completion.completion_item if completion is not None else None
-        has_snippets = item is not None and bool(item.snippet_support)
+        has_snippets = self._can("text_document.completion.completion_item.snippet_support")
         return Answers(SourceFile(name, text), self.workspace.position_codec, has_snippets)
 
-    def asked(self, uri: str, place: types.Position) -> tuple[Answers, Position]:
-        """Return what converts answers about a document, and the place that a request is about."""
+    def asked(self, uri: str, place: types.Position) -> tuple[Answers, Index, Position]:
+        """Return what converts answers about a document, the names that it can use, and the place of a request."""
         answers = self.answers(uri)
-        return answers, Position(*answers.positions.from_client(place))
+        return answers, self.index_of(uri), Position(*answers.positions.from_client(place))
 
     def index_of(self, uri: str) -> Index:
         """Return the names that a document can use; those of the language until its project has been read."""
@@ -140,17 +139,13 @@ class Server(LanguageServer):
     async def _index(self) -> None:
         """Read the meaning of names again, after the diagnostics: a user waits for these."""
         is_first = await asyncio.to_thread(self.projects.index, self.texts())
-        wanted = self.client_capabilities.workspace
-        if is_first and wanted is not None and wanted.inlay_hint and wanted.inlay_hint.refresh_support:
+        if is_first and self._can("workspace.inlay_hint.refresh_support"):
             self.workspace_inlay_hint_refresh(None)  # the answer says nothing
 
     def _publish(self, found: Iterable[tuple[Path, list[Diagnostic]]]) -> None:
         for path, diagnostics in found:
-            if not diagnostics and path not in self._found:
+            if not diagnostics and not self._found.get(path):
                 continue
-            if diagnostics:
-                self._found[path] = diagnostics
-            else:
-                del self._found[path]
+            self._found[path] = diagnostics
             shown = [as_shown(each, self.workspace.position_codec) for each in diagnostics]
             self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri_of(path), shown))

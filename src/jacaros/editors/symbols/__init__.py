@@ -3,6 +3,7 @@
 An `Index` holds the occurrences of all names of one project. Build it from what the checker reads, and replace a program
 after each edit; programs may have errors, as `jacaros.agents.language.loader.read_program` skips only broken clauses.
 
+    from jacaros.editors.symbols.index import Index       # the other functions: `navigation`, `renaming`, `completion`, …
     index = Index(artifacts=types, actions=code.actions)
     index.put("src/agt/robot.asl", program)               # again after each edit; `index.drop(name)` removes it
     index.put_project(file)                               # a .jcm or .mas2j file, for the beliefs and goals in it
@@ -18,44 +19,3 @@ after each edit; programs may have errors, as `jacaros.agents.language.loader.re
 
 Positions count from 1, columns in characters (`model`). A file is known by its name in spans.
 """
-
-from jacaros.editors.symbols.completion import completions
-from jacaros.editors.symbols.hints import hints
-from jacaros.editors.symbols.hovers import hover
-from jacaros.editors.symbols.index import Index
-from jacaros.editors.symbols.model import (
-    Completion,
-    Edit,
-    Hint,
-    Hover,
-    Occurrence,
-    Position,
-    RenameRefused,
-    Symbol,
-)
-from jacaros.editors.symbols.navigation import definitions, highlights, occurrence_at, references
-from jacaros.editors.symbols.renaming import renamable, rename
-from jacaros.editors.symbols.yaml_keys import yaml_completions, yaml_hover
-
-__all__ = [
-    "Completion",
-    "Edit",
-    "Hint",
-    "Hover",
-    "Index",
-    "Occurrence",
-    "Position",
-    "RenameRefused",
-    "Symbol",
-    "completions",
-    "definitions",
-    "highlights",
-    "hints",
-    "hover",
-    "occurrence_at",
-    "references",
-    "renamable",
-    "rename",
-    "yaml_completions",
-    "yaml_hover",
-]

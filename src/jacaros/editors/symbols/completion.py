@@ -7,8 +7,8 @@ from jacaros.agents.language.diagnostics import SourceFile
 from jacaros.agents.language.term_parser import PERFORMATIVES
 from jacaros.agents.terms.functions import ARITIES
 from jacaros.editors.symbols.artifact_types import EVERYWHERE, Offered
-from jacaros.editors.symbols.descriptions import described, names_of, prefix_of, summary_of_action
-from jacaros.editors.symbols.docstrings import parameters_in, short_unit
+from jacaros.editors.symbols.descriptions import described, names_of, prefix_of
+from jacaros.editors.symbols.docstrings import markdown, parameters_in, short_unit
 from jacaros.editors.symbols.index import Index
 from jacaros.editors.symbols.model import Completion, Kind, Position
 from jacaros.editors.symbols.tokens_at import OpenCall, Reading, reading_at
@@ -206,7 +206,7 @@ def _actions(index: Index, reading: Reading, rank: int = 0, conditions: bool = F
         if conditions and action.body_only:
             continue
         names = parameters_in(action.function.__doc__, action.minimum) or ("",) * action.minimum
-        text = summary_of_action(action)
+        text = markdown(action.function.__doc__)
         yield _call(name, "internal action", names, reading, "internal action", text, rank)
     for name, (least, _) in ARITIES.items():
         if name not in index.actions:

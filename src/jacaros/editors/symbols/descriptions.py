@@ -1,15 +1,16 @@
-"""What a symbol is, in one line and in Markdown: its signature, its documentation, and where it comes from."""
+"""What a name means, in one line and in Markdown: its signature, its documentation, and where it comes from."""
 
 from collections.abc import Iterable, Iterator
 from pathlib import PurePath
 
-from jacaros.agents.language.diagnostics import Span
+from jacaros.agents.language.diagnostics import SourceFile, Span
 from jacaros.agents.mind.actions.internal_action import InternalAction
 from jacaros.agents.terms.functions import ARITIES
 from jacaros.editors.symbols.artifact_types import Offered
 from jacaros.editors.symbols.docstrings import markdown, usages_in
 from jacaros.editors.symbols.index import Index
-from jacaros.editors.symbols.model import Occurrence, Role, Symbol
+from jacaros.editors.symbols.model import Hover, Occurrence, Position, Role, Symbol
+from jacaros.editors.symbols.navigation import occurrence_at
 
 _FEW = 5
 """Number of places that are listed."""
@@ -23,6 +24,54 @@ _ROLES: tuple[tuple[str, tuple[Role, ...]], ...] = (
     ("posted", ("calls",)),
     ("asked", ("asks",)),
 )
+
+_SIGNS = {"goal": "!", "plan": "@"}
+
+
+def hover(index: Index, file: SourceFile, at: Position) -> Hover | None:
+    """Return what is known of the name at a position; None if there is no name or nothing is known."""
+    found = occurrence_at(index, file, at)
+    if found is None:
+        return None
+    text = _text(index, found)
+    return Hover(text, found.span) if text else None
+
+
+def _text(index: Index, found: Occurrence) -> str:
+    symbol = found.symbol
+    match symbol.kind:
+        case "variable":
+            return "\n".join(dict.fromkeys(_of_variable(index, found)))
+        case "internal action":
+            return _about_action(symbol.name, index.actions.get(symbol.name))
+    offered = [_signature_of(each) for each in index.offered(symbol)]
+    if symbol.kind == "operation":
+        return "\n\n---\n\n".join(offered)
+    own = [] if offered else [f"```\n{_usage(index, symbol)}\n```", symbol.kind, _comment(index, symbol)]
+    parts = ["\n\n---\n\n".join(offered), *own, described(index, symbol)[1]]
+    return "\n\n".join(filter(None, parts))
+
+
+def _usage(index: Index, symbol: Symbol) -> str:
+    names = [each or "_" for each in names_of(index, symbol)]
+    arguments = f"({', '.join(names)})" if names else ""
+    return f"{prefix_of(symbol)}{_SIGNS.get(symbol.kind, '')}{symbol.name}{arguments}"
+
+
+def _comment(index: Index, symbol: Symbol) -> str:
+    """Return the comment above the first fact, rule or plan."""
+    clauses = [each.clause for each in index.of(symbol) if each.role in ("defines", "handles")]
+    return next(filter(None, map(_comment_above, clauses)), "")
+
+
+def _of_variable(index: Index, variable: Occurrence) -> Iterator[str]:
+    """Say what properties and operations of its clause tell about the values of a variable."""
+    for each in index.in_file(variable.span.file.name):
+        if each.clause == variable.clause and variable.symbol.name in each.arguments:
+            for offered in index.offered(each.symbol):
+                for name, argument in zip(each.arguments, offered.arguments, strict=False):
+                    if name == variable.symbol.name and argument.meaning:
+                        yield f"- {argument.meaning} (`{argument.name}` of `{offered}`)"
 
 
 def described(index: Index, symbol: Symbol) -> tuple[str, str]:
@@ -76,7 +125,7 @@ def prefix_of(symbol: Symbol) -> str:
     return f"{symbol.scope.partition('#')[0]}::" if symbol.scope else ""
 
 
-def comment_above(clause: Span) -> str:
+def _comment_above(clause: Span) -> str:
     """Return the comment in the lines right above a clause."""
     lines = clause.file.lines
     first = clause.line - 1
@@ -85,19 +134,14 @@ def comment_above(clause: Span) -> str:
     return "\n".join([each.lstrip("/").strip() for each in lines[first : clause.line - 1]])
 
 
-def signature_of(offered: Offered) -> str:
+def _signature_of(offered: Offered) -> str:
     """Return an operation or property with kinds and units of its values, in several lines of Markdown."""
     values = [f"- `{each.name}`: {each.meaning}" for each in offered.arguments if each.meaning]
     parts = [f"```\n{offered}\n```", f"{offered.how} of `{offered.holder}`", "\n".join(values), offered.text]
     return "\n\n".join(filter(None, parts))
 
 
-def summary_of_action(action: InternalAction) -> str:
-    """Return the documentation of an internal action."""
-    return markdown(action.function.__doc__)
-
-
-def about_action(name: str, action: InternalAction | None) -> str:
+def _about_action(name: str, action: InternalAction | None) -> str:
     """Return the usage, properties and documentation of an internal action or function."""
     if action is None:
         least, most = ARITIES.get(name, (0, 0))

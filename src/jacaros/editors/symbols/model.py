@@ -113,6 +113,6 @@ class Hint(NamedTuple):
 class RenameRefused(JacarosError):
     """A name cannot be changed, or not to the wanted one; ``help`` says what can be done."""
 
-    def __init__(self, message: str, help: str = "") -> None:
+    def __init__(self, message: str, help: str) -> None:
         super().__init__(message)
         self.message, self.help = message, help

@@ -230,10 +230,4 @@ def _is_directive(tokens: list[Token], close: int) -> bool:
 
 
 def _end(tokens: list[Token], index: int) -> int:
-    for number in range(index, len(tokens)):
-        token = tokens[number]
-        if token.kind == "." or (
-            token.first and token.column == 1 and token.kind in _BEGINS and number > index
-        ):
-            return number
-    return len(tokens)
+    return next((number for number in range(index, len(tokens)) if tokens[number].kind == "."), len(tokens))

@@ -87,7 +87,7 @@ def test_each_word_has_its_colour() -> None:
     ]
 
     file = SourceFile("a.asl", text)
-    data = colours(file, Positions.of(file, CODEC))
+    data = colours(file, Positions(file, CODEC))
     column, words = 0, []
     for at in range(0, len(data), 5):
         column += data[at + 1]
