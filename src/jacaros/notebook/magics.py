@@ -12,8 +12,9 @@ from IPython.core.magic import Magics, cell_magic, line_magic, magics_class
 
 from jacaros.artifacts.env.artifact import Artifact
 from jacaros.notebook.run import Run
-from jacaros.notebook.running import Settings, run_programs
+from jacaros.notebook.running import run_programs
 from jacaros.runtime.errors import JacarosError
+from jacaros.runtime.mas.options import RunOptions
 
 ALONE = "agent"
 """Name of the agent of a cell that names none."""
@@ -40,9 +41,6 @@ class _Arguments(argparse.ArgumentParser):
 
     def error(self, message: str) -> Any:
         raise UsageError(f"{message}\n{self.format_usage()}")
-
-    def exit(self, status: int = 0, message: str | None = None) -> Any:
-        raise UsageError(message or "")
 
 
 def _with_settings(program: str, description: str) -> _Arguments:
@@ -105,18 +103,18 @@ class AgentMagics(Magics):
 
     def _run(self, programs: dict[str, str], given: argparse.Namespace) -> Run:
         self._count += 1
-        settings = Settings(
-            given.world,
-            given.mappings,
-            given.faults,
-            given.seed,
-            given.seconds,
-            given.clock,
-            given.until_idle,
+        options = RunOptions(
+            fast=given.clock == "fast",
+            world=given.world,
+            mappings=given.mappings,
+            faults=given.faults,
+            seed=given.seed,
+            seconds=given.seconds,
+            until_idle=given.until_idle,
         )
         file = Path(self._folder.name) / f"run_{self._count}.jsonl"
         try:
-            return run_programs(programs, settings, self._artifact_types(), file)
+            return run_programs(programs, options, self._artifact_types(), file)
         except JacarosError as problem:
             raise UsageError(f"\n{problem}") from None
 

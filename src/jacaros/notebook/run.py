@@ -44,13 +44,11 @@ class Run:
     Attributes:
         file: the recording, which lasts as long as the kernel; all commands for recordings read it.
         tables: its agents at the end, as HTML.
-        limit: seconds after which it had to end.
         interrupted: whether the user interrupted it.
     """
 
     file: Path
     tables: str
-    limit: float
     interrupted: bool = False
 
     @cached_property
