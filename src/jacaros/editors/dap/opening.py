@@ -1,6 +1,6 @@
 """The beginning of a session, before there is a run: `initialize`, and `launch` or `attach`."""
 
-from collections.abc import Mapping
+from itertools import chain
 from typing import Any
 
 from jacaros.editors.dap.channel import Arguments, Channel
@@ -28,12 +28,8 @@ def opening(wire: Wire, channel: Channel) -> Arguments | None:
     return None
 
 
-_OPTIONS: Mapping[str, str] = {
-    "world": "--world",
-    "seed": "--seed",
-    "clock": "--clock",
-    "mapping": "--mapping",
-}
+_OPTIONS = ("world", "seed", "clock", "mapping")
+"""Arguments of `launch` that are options of ``jacaros run`` with the same names."""
 
 
 def command_line(given: Arguments) -> list[str]:
@@ -47,13 +43,8 @@ def command_line(given: Arguments) -> list[str]:
         raise UsageError("`program` is missing; name a .asl, .py, .mas2j or .jcm file")
     if not isinstance(more, list) or not all(isinstance(each, str) for each in more):
         raise UsageError(f"`args` must be a list of strings, found {more!r}")
-    words = [
-        word
-        for name, option in _OPTIONS.items()
-        for value in _values(name, given.get(name))
-        for word in (option, value)
-    ]
-    return [program, *words, *more]
+    options = ((f"--{name}", value) for name in _OPTIONS for value in _values(name, given.get(name)))
+    return [program, *chain.from_iterable(options), *more]
 
 
 def _values(name: str, given: Any) -> list[str]:

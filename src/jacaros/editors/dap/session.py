@@ -14,7 +14,6 @@ from jacaros.editors.dap.threads import Threads
 from jacaros.editors.dap.variables import Variables
 from jacaros.runtime.clock import of_run
 from jacaros.runtime.errors import JacarosError, UsageError
-from jacaros.runtime.mas.agents.host import AgentHost
 from jacaros.runtime.mas.console import line_of
 from jacaros.runtime.mas.debugging.conditions import bindings_of
 from jacaros.runtime.mas.debugging.debugger import DebugState, StepKind
@@ -246,29 +245,22 @@ class Session:
 
     def _stack_trace(self, given: Arguments) -> Body:
         frames = self._threads.stack(_number(given, "threadId"))
-        first = int(given.get("startFrame") or 0)
-        levels = int(given.get("levels") or 0) or len(frames)
-        return {"stackFrames": frames[first : first + levels], "totalFrames": len(frames)}
+        return {"stackFrames": _page(frames, given, "startFrame", "levels"), "totalFrames": len(frames)}
 
     def _parts(self, given: Arguments) -> Body:
         found = self._variables.parts(_number(given, "variablesReference"))
-        first = int(given.get("start") or 0)
-        return {"variables": found[first : first + (int(given.get("count") or 0) or len(found))]}
+        return {"variables": _page(found, given, "start", "count")}
 
     def _evaluate(self, given: Arguments) -> Body:
-        """Answer a question to the agent of a stack frame, or show a binding of it."""
+        """Answer a question to the agent of a stack frame, or that the run stopped for; or show a binding of the frame."""
         written, frame_id = str(given["expression"]).strip(), given.get("frameId")
         level = None if frame_id is None else self._threads.level(int(frame_id))
-        host = self._agent() if level is None else level.host
+        host = self._threads.of(self._threads.stopped())[0] if level is None else level.host
         bindings = {} if level is None or level.frame is None else bindings_of(level.frame)
         if (alone := written.removeprefix("?")) in bindings:
             written = alone
             shown = self._variables.term(written, bindings[written])
-            return {
-                "result": shown["value"],
-                "type": shown["type"],
-                "variablesReference": shown["variablesReference"],
-            }
+            return {"result": shown["value"]} | {key: shown[key] for key in ("type", "variablesReference")}
         if written.startswith(("!", "+", "-")) and given.get("context") == "repl":
             if not self._settings.changes:
                 raise UsageError("this session is read-only; set `allowChanges` to change beliefs and goals")
@@ -278,11 +270,6 @@ class Session:
         else:
             raise UsageError(f"agent `{host.name}` is written in Python: it has no beliefs to ask for")
         return {"result": answer, "variablesReference": 0}
-
-    def _agent(self) -> AgentHost:
-        """Return the agent that the run stopped for, or the first one."""
-        host, _ = self._threads.of(self._threads.stopped())
-        return host
 
     def _exception_info(self, _: Arguments) -> Body:
         failure = self._debugger.failure
@@ -296,6 +283,12 @@ class Session:
             "breakMode": "always",
             "details": details,
         }
+
+
+def _page(found: list[dict[str, Any]], given: Arguments, start: str, count: str) -> list[dict[str, Any]]:
+    """Return the part of a list that the editor wants: all of it unless it says a number."""
+    first = int(given.get(start) or 0)
+    return found[first : first + (int(given.get(count) or 0) or len(found))]
 
 
 def _number(given: Arguments, name: str) -> int:

@@ -73,25 +73,18 @@ class Wire:
         A daemon thread reads: an idle client does not keep the process alive, and a paused run does not hold messages.
         """
         loop = asyncio.get_running_loop()
-        reader = threading.Thread(
-            target=self._read_all, args=(loop, take, ended), name="jacaros dap input", daemon=True
-        )
-        reader.start()
 
-    def _read_all(
-        self,
-        loop: asyncio.AbstractEventLoop,
-        take: Callable[[Message], None],
-        ended: Callable[[str], None],
-    ) -> None:
-        why = ""
-        with suppress(RuntimeError):  # the loop has ended
-            try:
-                while (message := self.read()) is not None:
-                    loop.call_soon_threadsafe(take, message, context=Context())
-            except (ProtocolError, OSError, ValueError) as error:
-                why = str(error)
-            loop.call_soon_threadsafe(ended, why, context=Context())
+        def read_all() -> None:
+            why = ""
+            with suppress(RuntimeError):  # the loop has ended
+                try:
+                    while (message := self.read()) is not None:
+                        loop.call_soon_threadsafe(take, message, context=Context())
+                except (ProtocolError, OSError, ValueError) as error:
+                    why = str(error)
+                loop.call_soon_threadsafe(ended, why, context=Context())
+
+        threading.Thread(target=read_all, name="jacaros dap input", daemon=True).start()
 
     def close(self) -> None:
         """Send what waits."""
