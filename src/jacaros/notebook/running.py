@@ -64,11 +64,8 @@ class _Running:
         self.output = SimpleQueue[tuple[str, bool]]()
         self.tables = ""
         self.error: BaseException | None = None
-        self._stop: Callable[[], object] = lambda: None
-
-    def stop(self) -> None:
-        """End the run; may be called from another thread."""
-        self._stop()
+        self.stop: Callable[[], object] = lambda: None
+        """Ends the run; may be called from another thread."""
 
     def run(self) -> None:
         try:
@@ -86,7 +83,7 @@ class _Running:
             on_log=lambda text, _: self.output.put((text, True)),
         )
         async with mas:
-            self._stop = partial(asyncio.get_running_loop().call_soon_threadsafe, mas.stop)
+            self.stop = partial(asyncio.get_running_loop().call_soon_threadsafe, mas.stop)
             mas.add_artifact_types(*self._types)
             with record(mas, self._file), suppress(RunEnded):
                 focus = _mapped(mas) if options.mappings and len(self._programs) == 1 else []
