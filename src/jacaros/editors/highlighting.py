@@ -6,17 +6,8 @@ documentation, notebooks, `rich`. Pygments comes with `rich`; nothing in the pac
 
 from typing import ClassVar
 
-from pygments.lexer import RegexLexer, bygroups, include  # type: ignore[import-untyped]
-from pygments.token import (  # type: ignore[import-untyped]
-    Comment,
-    Keyword,
-    Name,
-    Number,
-    Operator,
-    Punctuation,
-    String,
-    Whitespace,
-)
+from pygments.lexer import RegexLexer, bygroups, include
+from pygments.token import Comment, Keyword, Name, Number, Operator, Punctuation, String, Whitespace
 
 __all__ = ["AgentSpeakLexer", "ProjectLexer"]
 

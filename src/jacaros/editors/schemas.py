@@ -20,18 +20,9 @@ from jacaros.runtime.files.entries import declared_entries
 Schema = dict[str, Any]
 NUMBER: Schema = {"type": "number"}
 TEXT: Schema = {"type": "string"}
+SWITCH: Schema = {"type": "boolean"}
 PAIR: Schema = {"type": "array", "items": NUMBER, "minItems": 2, "maxItems": 2}
 POINTS: Schema = {"type": "array", "items": PAIR}
-RECTANGLE: Schema = {
-    "type": "object",
-    "properties": {"from": PAIR, "to": PAIR},
-    "additionalProperties": False,
-}
-POSE: Schema = {
-    "type": "object",
-    "properties": {"x": NUMBER, "y": NUMBER, "yaw_degrees": NUMBER},
-    "additionalProperties": False,
-}
 ANYTHING: Schema = {}
 
 
@@ -75,19 +66,23 @@ def declared(usual: Any, **others: Schema) -> Schema:
     return mapping({**found, **others}, required)
 
 
+RECTANGLE = mapping({"from": PAIR, "to": PAIR})
+POSE = mapping({"x": NUMBER, "y": NUMBER, "yaw_degrees": NUMBER})
+
+
 def worlds() -> Schema:
     """Return the schema of world files."""
     of_robots = {
-        "kind": {"type": "string"},
+        "kind": TEXT,
         "pose": POSE,
-        "navigation": {"anyOf": [{"type": "boolean"}, declared(robot.NavigationSettings())]},
-        "gripper": {"anyOf": [{"type": "boolean"}, mapping({"reach": NUMBER})]},
+        "navigation": {"anyOf": [SWITCH, declared(robot.NavigationSettings())]},
+        "gripper": {"anyOf": [SWITCH, mapping({"reach": NUMBER})]},
         "tools": named(declared(robot.CleaningTool("", ()), removes=listed(TEXT))),
         **dict.fromkeys(SECTIONS, named(ANYTHING)),
     }
     dock = declared(world.Dock("", Pose(0.0, 0.0, 0.0)), x=NUMBER, y=NUMBER, yaw_degrees=NUMBER)
     box = {"anyOf": [RECTANGLE, {"type": "object"}]}
-    wall = {"segment": POINTS, "polyline": POINTS, "box": box, "closed": {"type": "boolean"}}
+    wall = {"segment": POINTS, "polyline": POINTS, "box": box, "closed": SWITCH}
     own = {
         "map": TEXT,
         "size": PAIR,
@@ -116,17 +111,10 @@ def faults() -> Schema:
     }
     one = {"minProperties": 1, "maxProperties": 1}
     keys = {**own, **declared(Fault("", ""), after=one)["properties"]}
-    kinds = [
-        mapping(
-            {
-                "kind": {"const": name},
-                "robot": TEXT,
-                **{key: keys[key] for key in ("at", "after", "for", *kind.keys)},
-            },
-            ["kind"],
-        )
-        for name, kind in KINDS.items()
-    ]
+    kinds = []
+    for name, kind in KINDS.items():
+        others = {key: keys[key] for key in ("at", "after", "for", *kind.keys)}
+        kinds.append(mapping({"kind": {"const": name}, "robot": TEXT, **others}, ["kind"]))
     return mapping({"faults": named({"anyOf": kinds})}, ["faults"])
 
 
@@ -199,7 +187,7 @@ WORDS: Mapping[str, Schema] = {
     "qos": QOS,
     "suspend": {"enum": ["cancel", "go_on"]},
     "unit": {"enum": list(fields.UNITS)},
-    **{each: {"type": "boolean"} for each in ("latest_only", "read_only", "when_changed")},
+    **dict.fromkeys(("latest_only", "read_only", "when_changed"), SWITCH),
 }
 """The values of keys that have a choice."""
 
