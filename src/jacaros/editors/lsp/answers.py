@@ -9,7 +9,7 @@ from lsprotocol import types
 from pygls.workspace import PositionCodec
 
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span
-from jacaros.editors.lsp.positions import Positions, uri_of
+from jacaros.editors.lsp.positions import START, Positions, uri_of
 from jacaros.editors.symbols.model import Completion, Edit, Hint, Hover, Occurrence
 from jacaros.runtime.files.texts import printable
 from jacaros.runtime.mas.agents.programs import SourcePath
@@ -38,7 +38,6 @@ _LEVELS: Final = {
 _PAGE: Final = "https://github.com/jacaros/jacaros/blob/main/docs/reference/diagnostics.md"
 _UNUSED: Final = frozenset({"plan-never-selected", "goal-never-posted", "unused-handler", "unused-offer"})
 """Codes about clauses without effect, which editors show in grey."""
-_START: Final = types.Range(types.Position(0, 0), types.Position(0, 0))
 
 
 class Answers:
@@ -57,9 +56,8 @@ class Answers:
     def place(self, span: Span) -> types.Location | None:
         """Return a place in any file, also of the library; None in a text that is not in a file."""
         path = _path_of(span)
-        if path is None:
-            return None
-        return types.Location(uri_of(path), Positions(span.file, self._codec).range(span))
+        where = Positions(span.file, self._codec).range(span)
+        return None if path is None else types.Location(uri_of(path), where)
 
     def places(self, spans: Iterable[Span]) -> list[types.Location]:
         """Return places in any files."""
@@ -119,7 +117,7 @@ def as_shown(found: Diagnostic, codec: PositionCodec) -> types.Diagnostic:
     """Return a diagnostic for the client. Its suggested fix is the last line of the message."""
     help = f"\nhelp: {printable(found.help)}" if found.help else ""
     return types.Diagnostic(
-        range=_START if found.span is None else Positions(found.span.file, codec).range(found.span),
+        range=START if found.span is None else Positions(found.span.file, codec).range(found.span),
         message=printable(found.message) + help,
         severity=_LEVELS[found.severity],
         code=found.code or None,
@@ -136,6 +134,6 @@ def _without_places(snippet: str) -> str:
 
 def _path_of(span: Span) -> Path | None:
     name = span.file.name
-    if name.startswith("<"):
-        return None
-    return SourcePath(()).find(name) if name.startswith("$") else Path(name).resolve()
+    if name.startswith("$"):
+        return SourcePath(()).find(name)
+    return None if name.startswith("<") else Path(name).resolve()

@@ -9,7 +9,7 @@ from pygls.workspace import PositionCodec
 
 from jacaros.agents.language.diagnostics import Diagnostic, Fix, SourceFile, Span
 from jacaros.editors.lsp.answers import as_shown
-from jacaros.editors.lsp.positions import Positions
+from jacaros.editors.lsp.positions import START, Positions
 from jacaros.runtime.files.texts import Suggestion, close_matches
 
 _WORD: Final = re.compile(r"(?P<mark>[-+^]*[!?.~]*)(?P<name>\w+(?:\.\w+)*)")
@@ -34,11 +34,11 @@ def actions(
         edit = types.TextEdit(positions.range(where), text)
         yield _action(title, uri, edit, shown, is_preferred=len(edits) == 1)
     if is_program and found.severity != "error" and found.code:
-        edit = types.TextEdit(_at(positions, span.line), _allowing(span.file, span.line, found.code))
+        start = positions.to_client(span.line, 1)
+        edit = types.TextEdit(types.Range(start, start), _allowing(span.file, span.line, found.code))
         yield _action(f"Allow `{found.code}` here", uri, edit, shown)
-        first = types.Range(types.Position(0, 0), types.Position(0, 0))
-        text = f"// jacaros: allow-file {found.code}\n"
-        yield _action(f"Allow `{found.code}` in this file", uri, types.TextEdit(first, text), shown)
+        edit = types.TextEdit(START, f"// jacaros: allow-file {found.code}\n")
+        yield _action(f"Allow `{found.code}` in this file", uri, edit, shown)
 
 
 def edits_of(found: Diagnostic) -> Iterator[tuple[Span, str]]:
@@ -49,10 +49,8 @@ def edits_of(found: Diagnostic) -> Iterator[tuple[Span, str]]:
         yield found.help.where or found.span, found.help.text
     if not isinstance(found.help, Suggestion):
         return
-    for name in found.help.names:
-        where = _replaced(found.span, _ARITY.sub("", name))
-        if where is not None:
-            yield where
+    names = (_ARITY.sub("", name) for name in found.help.names)
+    yield from filter(None, (_replaced(found.span, name) for name in names))
 
 
 def _replaced(span: Span, name: str) -> tuple[Span, str] | None:
@@ -67,9 +65,7 @@ def _replaced(span: Span, name: str) -> tuple[Span, str] | None:
     lower = {each["name"].lower(): each["name"] for each in words}
     wanted = close[0] if close else lower.get(meant["name"].lower())
     word = next((each for each in words if each["name"] == wanted), None)
-    if word is None:
-        return None
-    if word["name"] == meant["name"] and not meant["mark"]:
+    if word is None or (word["name"] == meant["name"] and not meant["mark"]):
         return None
     whole = _part(span, word.start("name"), word.end())
     found = _MARK.search(span.file.lines[span.line - 1][: whole.column - 1])
@@ -92,11 +88,6 @@ def _text(span: Span) -> str:
 
 def _part(span: Span, begin: int, end: int) -> Span:
     return Span(span.file, span.line, span.column + begin, span.line, span.column + end)
-
-
-def _at(positions: Positions, line: int) -> types.Range:
-    start = types.Position(positions.to_client(line, 1).line, 0)
-    return types.Range(start, start)
 
 
 def _allowing(file: SourceFile, line: int, code: str) -> str:

@@ -11,7 +11,7 @@ from lsprotocol import types
 from jacaros.agents.language import nodes
 from jacaros.editors.lsp.membership import files_in
 from jacaros.editors.lsp.outline import Entry
-from jacaros.editors.lsp.positions import Positions, uri_of
+from jacaros.editors.lsp.positions import START, Positions, uri_of
 from jacaros.runtime.errors import JacarosError
 from jacaros.runtime.files.texts import shown_from
 
@@ -36,8 +36,7 @@ def lenses(
         is_recorded: whether there is a recording to ask.
     """
     uri = uri_of(path)
-    start = types.Range(types.Position(0, 0), types.Position(0, 0))
-    yield types.CodeLens(start, types.Command("Run", RUN, arguments=[uri]))
+    yield types.CodeLens(START, types.Command("Run", RUN, arguments=[uri]))
     for each in entries:
         if not isinstance(each.node, nodes.Plan):
             continue

@@ -69,11 +69,8 @@ def _reached(programs: Iterable[Path], folders: Sequence[Path]) -> set[Path]:
             continue
         found |= _mappings(_MAPPING.findall(text), folders)
         for name in _INCLUDE.findall(text):
-            try:
-                included = SourcePath((file.parent, *search.folders)).find(name)
-            except (OSError, ValueError):
-                continue
-            left.append(included.resolve())
+            with suppress(OSError, ValueError):
+                left.append(SourcePath((file.parent, *search.folders)).find(name).resolve())
     return found
 
 

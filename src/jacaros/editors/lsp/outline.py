@@ -95,11 +95,9 @@ def _of_project(part: ProjectPart) -> Iterator[Entry]:
         yield Entry(agent.name, types.SymbolKind.Class, agent.span, agent.span, agent.source or "agent")
     for space in part.workspaces:
         inner = tuple(
-            Entry(
-                each.spec.name, types.SymbolKind.Object, each.spec.span, each.spec.span, each.spec.type_name
-            )
-            for each in space.artifacts
-            if each.spec.span is not None
+            Entry(each.name, types.SymbolKind.Object, each.span, each.span, each.type_name)
+            for each in (artifact.spec for artifact in space.artifacts)
+            if each.span is not None
         )
         yield Entry(space.name, types.SymbolKind.Namespace, space.span, space.span, "workspace", None, inner)
     for node in part.nodes:
@@ -115,8 +113,8 @@ def symbols(entries: list[Entry], positions: Positions) -> list[types.DocumentSy
 def _symbol(entry: Entry, positions: Positions) -> types.DocumentSymbol:
     children = [_symbol(each, positions) for each in entry.children]
     whole, chosen = positions.range(entry.span), positions.range(entry.chosen)
-    last = max([whole.end, chosen.end, *(each.range.end for each in children)], key=_order)
-    first = min([whole.start, chosen.start], key=_order)
+    last = max([whole.end, chosen.end, *(each.range.end for each in children)])
+    first = min(whole.start, chosen.start)
     return types.DocumentSymbol(
         entry.name or "?",
         entry.kind,
@@ -125,10 +123,6 @@ def _symbol(entry: Entry, positions: Positions) -> types.DocumentSymbol:
         entry.detail or None,
         children=children,
     )
-
-
-def _order(place: types.Position) -> tuple[int, int]:
-    return place.line, place.character
 
 
 def folds(file: SourceFile, entries: list[Entry]) -> list[types.FoldingRange]:

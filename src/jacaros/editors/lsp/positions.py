@@ -1,12 +1,16 @@
 """Places of our texts as places of an editor: lines from 0, columns in the units that were negotiated."""
 
 from pathlib import Path
+from typing import Final
 
 from lsprotocol import types
 from pygls import uris
 from pygls.workspace import PositionCodec
 
 from jacaros.agents.language.diagnostics import SourceFile, Span
+
+START: Final = types.Range(types.Position(0, 0), types.Position(0, 0))
+"""The beginning of any text."""
 
 
 def path_of(uri: str) -> Path | None:

@@ -25,7 +25,8 @@ class Unit:
         files: all files that were read.
         found: the diagnostics, by file; those without a place belong to `path`.
         checked: the parsed project; None for YAML files.
-        index: the meaning of its names; None until it has been made.
+        index: the meaning of its names, which may be that of the check before; None until it has been made.
+        is_indexed: whether `index` is that of this check.
     """
 
     path: Path
@@ -33,6 +34,7 @@ class Unit:
     found: dict[Path, list[Diagnostic]] = field(default_factory=dict)
     checked: Checked | None = None
     index: Index | None = None
+    is_indexed: bool = False
 
     def name_of(self, file: Path) -> str:
         """Return the name of a file in the places of its programs."""
@@ -51,7 +53,6 @@ class Projects:
         self.roots = [each.resolve() for each in roots]
         self._observables = Observables()
         self._units: dict[Path, Unit] = {}
-        self._indexed: dict[Path, Unit] = {}
         self._members: dict[Path, set[Path]] = {}
         self._candidates: dict[tuple[Path, ...], list[Path]] = {}
 
@@ -84,10 +85,9 @@ class Projects:
         is_first = False
         with unsaved({str(path): text for path, text in texts.items()}):
             for unit in [*self._units.values()]:
-                if unit.checked is not None and self._indexed.get(unit.path) is not unit:
+                if unit.checked is not None and not unit.is_indexed:
                     is_first |= unit.index is None
-                    unit.index = _index_of(unit, unit.checked)
-                    self._indexed[unit.path] = unit
+                    unit.index, unit.is_indexed = _index_of(unit, unit.checked), True
         return is_first
 
     def files_changed(self) -> None:
@@ -147,14 +147,13 @@ class Projects:
         gone = [unit for unit in self._units.values() if unit.files.isdisjoint(texts)]
         for unit in gone:
             del self._units[unit.path]
-            self._indexed.pop(unit.path, None)
         return {file for unit in gone for file in unit.found}
 
 
 def _index_of(unit: Unit, checked: Checked) -> Index:
     """Return the index of a project as it was checked. What the one before knows of artifact types is read once."""
     agents = [each.name for each in checked.deployment.agents]
-    index = (unit.index or Index()).renewed(checked.known_types(), dict(checked.actions), agents)
+    index = Index(checked.known_types(), dict(checked.actions), agents, unit.index)
     for name, program in checked.read.items():
         index.put(name, program)
     for path in unit.files:

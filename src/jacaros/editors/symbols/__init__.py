@@ -5,9 +5,9 @@ after each edit; programs may have errors, as `jacaros.agents.language.loader.re
 
     from jacaros.editors.symbols.index import Index       # the other functions: `navigation`, `renaming`, `completion`, …
     index = Index(artifacts=types, actions=code.actions)
-    index.put("src/agt/robot.asl", program)               # again after each edit; `index.drop(name)` removes it
+    index.put("src/agt/robot.asl", program)               # again after each edit
     index.put_project(file)                               # a .jcm or .mas2j file, for the beliefs and goals in it
-    index = index.renewed(types, actions, agents)         # a new one without programs; artifact types are read once
+    index = Index(types, actions, agents, before=index)   # a new one without programs; artifact types are read once
     occurrence_at(index, file, Position(3, 7))            # *file*: the text in the editor, a `SourceFile`
     definitions(index, file, at); references(index, file, at); highlights(index, file, at)
     renamable(index, file, at); rename(index, file, at, "charge")   # raise `RenameRefused`

@@ -4,7 +4,7 @@ import ast
 import inspect
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 from pathlib import Path
 from typing import Final, NamedTuple
 from typing import Literal as OneOf
@@ -30,6 +30,8 @@ from jacaros.runtime.mas.checks.observables import Observables, value_of_words
 _STANDARD: Final = (Blackboard, Console, ManualRepository, SystemArtifact, WorkspaceArtifact)
 """The types of the artifacts that each workspace has."""
 _BODY: Final = "the agent's body"
+_NAMING: Final = ("define_property", "signal", "robot_property")
+"""Methods whose first argument names a property or signal."""
 EVERYWHERE: Final = frozenset({_BODY, *(each.__name__ for each in _STANDARD)})
 """Holders of what every agent can use."""
 
@@ -116,16 +118,9 @@ def _operation(kind: type[Artifact], declared: DeclaredOperation) -> Offered:
 
     arguments = tuple([argument(each.name, each.expected, each.output) for each in signature.parameters])
     method = getattr(declared.source, "__name__", declared.name)
-    return Offered(
-        "operation",
-        declared.name,
-        arguments,
-        signature.fewest,
-        signature.rest is not None,
-        kind.__name__,
-        markdown(doc),
-        lambda: _declared_at(kind, declared.name, method),
-    )
+    find = partial(_declared_at, kind, declared.name, method)
+    least, is_open = signature.fewest, signature.rest is not None
+    return Offered("operation", declared.name, arguments, least, is_open, kind.__name__, markdown(doc), find)
 
 
 def _observable(kind: type[Artifact], name: str, adder: Adder, text: str) -> Offered:
@@ -133,16 +128,9 @@ def _observable(kind: type[Artifact], name: str, adder: Adder, text: str) -> Off
     names = [each.strip(" '") for each in inside.split(",") if each.strip()] if adder.size is not None else []
     units = [each.unit for each in adder.values] + [""] * len(names)
     arguments = tuple([ArgumentWords(each, "", unit) for each, unit in zip(names, units, strict=False)])
-    return Offered(
-        "signal" if adder.how == "signal" else "property",
-        name,
-        arguments,
-        0 if adder.size is None else len(names),
-        adder.size is None,
-        kind.__name__,
-        markdown(text),
-        lambda: _declared_at(kind, name, ""),
-    )
+    how: OneOf["property", "signal"] = "signal" if adder.how == "signal" else "property"
+    find = partial(_declared_at, kind, name, "")
+    return Offered(how, name, arguments, len(names), adder.size is None, kind.__name__, markdown(text), find)
 
 
 @cache
@@ -186,11 +174,7 @@ def _declared_at(kind: type[Artifact], name: str, method: str) -> Span | None:
 
 
 def _named_by(call: ast.Call) -> Iterator[str]:
-    if isinstance(call.func, ast.Attribute) and call.func.attr in (
-        "define_property",
-        "signal",
-        "robot_property",
-    ):
+    if isinstance(call.func, ast.Attribute) and call.func.attr in _NAMING:
         yield from (str(each.value) for each in call.args[:1] if isinstance(each, ast.Constant))
 
 

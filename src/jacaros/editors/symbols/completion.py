@@ -218,9 +218,8 @@ def _variables(reading: Reading) -> Iterator[Completion]:
 
 
 def _keywords(reading: Reading, words: dict[str, str]) -> Iterator[Completion]:
-    yield from (
-        Completion(each, "keyword", insert, reading.replaces, rank=1) for each, insert in words.items()
-    )
+    for each, insert in words.items():
+        yield Completion(each, "keyword", insert, reading.replaces, rank=1)
 
 
 def _plain(text: str, kind: str, reading: Reading, detail: str = "", rank: int = 0) -> Completion:

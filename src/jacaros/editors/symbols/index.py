@@ -22,6 +22,7 @@ class Index:
         artifacts: the types of its artifacts, as far as they are known.
         actions: internal actions by name, with those of the project's Python code.
         agents: names of its agents.
+        before: an earlier index of the project. The artifact types that it knows are not read again.
 
     Attributes:
         actions: as given.
@@ -33,56 +34,32 @@ class Index:
         artifacts: Iterable[type[Artifact]] = (),
         actions: Mapping[str, InternalAction] = STANDARD,
         agents: Sequence[str] = (),
+        before: "Index | None" = None,
     ) -> None:
         self.actions, self.agents = actions, agents
-        self._observables = Observables()
-        self._types: dict[type[Artifact], list[Offered]] = {}
-        self._offered: dict[str, list[Offered]] = {}
-        self._programs: dict[str, tuple[nodes.Program | SourceFile, list[Occurrence]]] = {}
-        self._by_symbol: dict[Symbol, list[Occurrence]] | None = None
-        self._by_file: dict[str, dict[int, list[Occurrence]]] = {}
-        self.furnish(artifacts)
-
-    def renewed(
-        self,
-        artifacts: Iterable[type[Artifact]],
-        actions: Mapping[str, InternalAction],
-        agents: Sequence[str],
-    ) -> "Index":
-        """Return an index without programs that keeps what is known of artifact types. This one stays as it is."""
-        other = Index((), actions, agents)
-        other._types, other._observables = self._types, self._observables
-        other.furnish(artifacts)
-        return other
-
-    def furnish(self, artifacts: Iterable[type[Artifact]]) -> None:
-        """Replace the types of the project's artifacts. A type that was known before is not read again."""
-        known = self._types
-        self._types = {
+        self._observables: Observables = Observables() if before is None else before._observables
+        known = {} if before is None else before._types
+        self._types: dict[type[Artifact], list[Offered]] = {
             each: known[each] if each in known else offered_by(each, self._observables) for each in artifacts
         }
-        self._offered = {}
+        self._offered: dict[str, list[Offered]] = {}
         for offered in (*standard_offers(), *(each for found in self._types.values() for each in found)):
             same = self._offered.setdefault(offered.name, [])
             if not any((one.holder, one.arguments) == (offered.holder, offered.arguments) for one in same):
                 same.append(offered)
+        self._programs: dict[str, list[Occurrence]] = {}
+        self._by_symbol: dict[Symbol, list[Occurrence]] | None = None
+        self._by_file: dict[str, dict[int, list[Occurrence]]] = {}
 
     def put(self, name: str, program: nodes.Program) -> None:
-        """Add a program with its includes, or replace it. Nothing is done if it is the same object."""
-        before = self._programs.get(name)
-        if before is None or before[0] is not program:
-            self._programs[name] = program, list(occurrences_of(program, self.actions, name))
-            self._by_symbol = None
+        """Add a program with its includes, or replace it."""
+        self._programs[name] = list(occurrences_of(program, self.actions, name))
+        self._by_symbol = None
 
     def put_project(self, file: SourceFile) -> None:
         """Add a project file, for the beliefs and goals that it gives its agents, or replace it."""
-        self._programs[file.name] = file, list(declared_in(file))
+        self._programs[file.name] = list(declared_in(file))
         self._by_symbol = None
-
-    def drop(self, name: str) -> None:
-        """Remove a program or project file."""
-        if self._programs.pop(name, None) is not None:
-            self._by_symbol = None
 
     # Occurrences.
 
@@ -119,7 +96,7 @@ class Index:
         if self._by_symbol is None:
             self._by_symbol, self._by_file = {}, {}
             seen: set[tuple[str, int, int]] = set()
-            for occurrence in (each for _, found in self._programs.values() for each in found):
+            for occurrence in (each for found in self._programs.values() for each in found):
                 span = occurrence.span
                 place = span.file.name, span.line, span.column
                 if place in seen:

@@ -77,19 +77,18 @@ def declared_in(file: SourceFile) -> Iterator[Occurrence]:
     """Yield the occurrences in the beliefs and goals that a project file gives its agents."""
     seeker = _Seeker({}, file.name)
     for agent in reader_of(file, []).read().agents:
-        kinds: tuple[tuple[Kind, list[tuple[str, Span]]], ...] = (
-            ("belief", agent.beliefs),
-            ("goal", agent.goals),
-        )
-        for kind, pieces in kinds:
-            for text, place in pieces:
-                quoted = file.lines[place.line - 1][place.column - 1 :].startswith('"')
-                # The text stays where it is, so the places of its nodes are those in the file.
-                padded = "\n" * (place.line - 1) + " " * (place.column - 1 + quoted) + text
-                with suppress(AslError):  # the checker reports it
-                    for literal in parse_literals(padded, file.name):
-                        for each in seeker.clause(literal, kind):
-                            yield each._replace(span=each.span._replace(file=file), clause=place)
+        pieces: list[tuple[Kind, tuple[str, Span]]] = [
+            *(("belief", each) for each in agent.beliefs),
+            *(("goal", each) for each in agent.goals),
+        ]
+        for kind, (text, place) in pieces:
+            quoted = file.lines[place.line - 1][place.column - 1 :].startswith('"')
+            # The text stays where it is, so the places of its nodes are those in the file.
+            padded = "\n" * (place.line - 1) + " " * (place.column - 1 + quoted) + text
+            with suppress(AslError):  # the checker reports it
+                for literal in parse_literals(padded, file.name):
+                    for each in seeker.clause(literal, kind):
+                        yield each._replace(span=each.span._replace(file=file), clause=place)
 
 
 class _Seeker:
@@ -115,7 +114,7 @@ class _Seeker:
             node, asked = self._stack.pop()
             if type(node) is nodes.Variable:  # the most frequent kind
                 if not node.unnamed:
-                    self._note_name("variable", node, node.name, "mentions")
+                    self._note_symbol(Symbol("variable", node.name, 0, self._scope), node, "mentions")
                 if node.annotations is not None:
                     self._push(node.annotations)
             else:
@@ -141,7 +140,7 @@ class _Seeker:
             case nodes.InternalAction():
                 self._call(node)
             case nodes.FunctionCall():
-                self._note_name("internal action", node, node.name, "calls")
+                self._note_symbol(Symbol("internal action", node.name), node, "calls")
                 self._push(*node.arguments, asked=node.name == ".count")
             case nodes.Rule():
                 self._literal("belief", node.head, "defines")
@@ -166,7 +165,7 @@ class _Seeker:
         self._push(*children(literal))
 
     def _call(self, call: nodes.InternalAction) -> None:
-        self._note_name("internal action", call, call.name, "calls")
+        self._note_symbol(Symbol("internal action", call.name), call, "calls")
         action, arguments = self._actions.get(call.name, UNDECLARED), list(call.arguments)
         place = action.performative
         if place is not None and len(arguments) > place + 1:
@@ -209,26 +208,16 @@ class _Seeker:
             space = f"{space} of {self._name}"
         names = tuple(map(_variable_name, literal.arguments))
         size = 0 if kind == "plan" else len(names)
-        self._note_name(kind, literal, literal.functor, role, size, space or "", names)
+        self._note_symbol(Symbol(kind, literal.functor, size, space or ""), literal, role, names)
 
-    def _note_name(
-        self,
-        kind: Kind,
-        node: nodes.Node,
-        name: str,
-        role: Role,
-        arity: int = 0,
-        scope: str = "",
-        arguments: tuple[str, ...] = (),
+    def _note_symbol(
+        self, symbol: Symbol, node: nodes.Node, role: Role, arguments: tuple[str, ...] = ()
     ) -> None:
         if node.span is None or self._clause is None:
             return
-        span = _name_in(node.span, name)
-        if span is None:
-            return  # made by a pattern
-        if kind == "variable":
-            scope = self._scope
-        self._found.append(Occurrence(Symbol(kind, name, arity, scope), role, span, self._clause, arguments))
+        span = _name_in(node.span, symbol.name)
+        if span is not None:  # not made by a pattern
+            self._found.append(Occurrence(symbol, role, span, self._clause, arguments))
 
 
 def scope_of(clause: Span) -> str:

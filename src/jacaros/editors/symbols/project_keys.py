@@ -79,9 +79,9 @@ def _keys(file: SourceFile, before: Sequence[ProjectToken]) -> dict[str, str]:
     if not file.name.endswith(".jcm"):
         return {each: f"{each}: " for each in Mas2jReader.sections} if _depth(before) == 1 else {}
     block = BLOCKS.get(_owner(before))
-    if block is not None:
-        return {each: _FORMS.get(each, f"{each}: ") for each in (*block.keys, *block.entries)}
-    return {each: _FORMS.get(each, f"{each}: ") for each in JcmReader.sections} if _depth(before) == 1 else {}
+    outside = JcmReader.sections if _depth(before) == 1 else ()
+    names = outside if block is None else (*block.keys, *block.entries)
+    return {each: _FORMS.get(each, f"{each}: ") for each in names}
 
 
 def _depth(before: Sequence[ProjectToken]) -> int:

@@ -53,9 +53,7 @@ def yaml_hover(file: SourceFile, at: Position) -> Hover | None:
         return None
     place = place_in(_before(file, Position(at.line, word.end() + 1)))
     key = place.key or place.partial
-    texts = dict.fromkeys(
-        filter(None, (_told(each) for each in _at_key(_schemas(file.text, place.path), key)))
-    )
+    texts = dict.fromkeys(filter(None, map(_told, _at_key(_schemas(file.text, place.path), key))))
     span = Span(file, at.line, word.start() + 1, at.line, word.end() + 1)
     return Hover(f"`{key}`\n\n" + "\n\n".join(texts), span) if texts else None
 
@@ -74,11 +72,9 @@ def _kinds(keys: Mapping[str, str]) -> list[Schema]:
     """Return the schemas of files with these keys; all of them for an empty file."""
     known = [len(keys.keys() & each["properties"].keys()) for each in _every()]
     most = max(known)
-    return (
-        []
-        if keys and not most
-        else [each for each, count in zip(_every(), known, strict=True) if count == most]
-    )
+    if keys and not most:
+        return []
+    return [each for each, count in zip(_every(), known, strict=True) if count == most]
 
 
 def _schemas(text: str, path: Path) -> list[Schema]:
@@ -89,7 +85,8 @@ def _schemas(text: str, path: Path) -> list[Schema]:
     for step in path:
         walked = (*walked, step)
         beside = keys.get(walked, {})
-        inner = _items(found) if isinstance(step, int) else _at_key(found, step)
+        items = (each["items"] for each in found if "items" in each)
+        inner = items if isinstance(step, int) else _at_key(found, step)
         found = [each for one in inner for each in _fitting(one, beside)]
     return found
 
@@ -116,10 +113,6 @@ def _allows(schema: Schema, keys: Mapping[str, str]) -> bool:
     return all(
         value == known[key]["const"] for key, value in keys.items() if value and "const" in known.get(key, {})
     )
-
-
-def _items(schemas: list[Schema]) -> Iterator[Schema]:
-    return (each["items"] for each in schemas if "items" in each)
 
 
 def _at_key(schemas: list[Schema], key: str) -> Iterator[Schema]:

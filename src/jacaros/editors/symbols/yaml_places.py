@@ -68,11 +68,10 @@ class _Scanner:
             self.frames[-1].count += 1
             blanks = len(rest) - len(rest[1:].lstrip())
             indent, rest = indent + max(blanks, 2), rest[1:].lstrip()
+        self._leave(indent)
         if not rest:
-            self._leave(indent)
             return
         found = _KEY.match(rest)
-        self._leave(indent)
         if found is None and rest[:1] not in "{[":
             self.partial = rest
             return
@@ -139,9 +138,8 @@ def place_in(text: str) -> Place:
         return Place(top.path if not top.is_list else top.inner, top.key, scanner.partial)
     if _KEY.search(_COMMENT.sub("", last)) is not None:
         return Place(top.path, top.key, scanner.partial)
-    if top.is_list or (top.key and top.indent < indent):
-        return Place(top.inner, "", scanner.partial)
-    return Place(top.path, "", scanner.partial)
+    is_inside = top.is_list or (top.key and top.indent < indent)
+    return Place(top.inner if is_inside else top.path, "", scanner.partial)
 
 
 def keys_in(text: str) -> dict[Path, dict[str, str]]:
