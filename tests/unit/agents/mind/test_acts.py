@@ -26,6 +26,15 @@ def test_an_action_suspends_only_its_intention_and_binds_its_outputs():
     assert agent.prints == ["moved(7)", "other"]
 
 
+def test_a_variable_can_be_the_namespace_of_an_action():
+    agent = AgentHarness("!g(room). +!g(N) <- N::move(1, X); .print(N, X).")
+    agent.run(seconds=0.001)
+    assert [str(act) for act in agent.acts] == ["room::move(1,X)"]
+    agent.act("move").complete(7)
+    agent.run()
+    assert agent.prints == ["room7"]
+
+
 def test_an_action_that_ends_immediately_takes_one_turn():
     agent = AgentHarness(
         "!g. +!g <- a; .print(1); b; .print(2).", actions={"a": lambda: True, "b": lambda: True}

@@ -329,7 +329,7 @@ class BodyCompiler:
         action = step.action
         with self._function(name, step) as fn:
             fn.load(self.frame, names_in(step))
-            if isinstance(action, nodes.Literal):
+            if _is_fixed(action):
                 symbol = fn.constant(functor_of_literal(action))
                 arguments = tuple_of([resolved(fn, build(fn, a)) for a in action.arguments])
                 annotations = "()"
