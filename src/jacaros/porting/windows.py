@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
 _EVENTS = re.compile(r"link\w+ToOp")
 """Methods of ``GUIArtifact`` that connect a part of a window with an operation."""
-_GIVES = re.compile(r"(set|add|register)\w*")
-"""Methods that give a window to a model."""
+_GIVES = re.compile(r"(set|add|put|register)\w*")
+"""Methods that give a window to a model or a collection."""
 
 
 def only_shows(node: Node, scope: Scope) -> bool:
@@ -66,5 +66,6 @@ def _declared(name: str, node: Node, scope: Scope) -> JavaType:
             found, _, kind = declarator(variable, each)
             if found == name:
                 return kind
+    parameters = dict(scope.method.parameters) if scope.method else {}
     member = scope.of.members.get(name)
-    return member.type if member else UNKNOWN
+    return parameters.get(name) or (member.type if member else UNKNOWN)

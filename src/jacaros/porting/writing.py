@@ -333,7 +333,7 @@ def without_unused(code: str) -> str:
             continue
         names = [each for each in ast.walk(function) if isinstance(each, ast.Name)]
         read = {each.id for each in names if not isinstance(each.ctx, ast.Store)}
-        for each in names:
+        for each in sorted(names, key=lambda name: -name.col_offset):  # from the right: columns stay valid
             if isinstance(each.ctx, ast.Store) and each.id not in read and not each.id.startswith("_"):
                 line = lines[each.lineno - 1]
                 offset = len(line.encode()[: each.col_offset].decode())

@@ -16,7 +16,8 @@ HEAD = "import cartago.*; public class A extends Artifact { "
 def method(java: str) -> str:
     """Return the Python lines of an operation with this body."""
     text = port(
-        "A.java", f"{HEAD}int n; String s; @OPERATION void f(int x, double y, Object o) {{ {java} }} }}"
+        "A.java",
+        f"{HEAD}int n; String s; Map<String, String> m; @OPERATION void f(int x, double y, Object o) {{ {java} }} }}",
     ).text
     return "\n".join(line.removeprefix("        ") for line in text.partition("def f(")[2].splitlines()[1:])
 
@@ -65,6 +66,11 @@ def test_a_statement_has_its_translation(java: str, python: str) -> None:
     assert method(java).strip() == python
 
 
+def test_two_names_of_a_line_can_be_unused() -> None:
+    java = "for (Map.Entry<String, String> e : m.entrySet()) { B.b(e.getKey(), e.getValue()); }"
+    assert method(java).strip().startswith("for _e_key, _e_value in self.m.items():\n")
+
+
 @pytest.mark.parametrize(
     "java",
     [
@@ -102,6 +108,19 @@ def test_a_window_is_left_out_and_does_not_fail() -> None:
     assert "not_ported" not in found.text
     assert "# Java, line 1, a window: view.setTitle(s);" in found.text
     assert 'self.signal("shown")' in found.text
+
+
+@pytest.mark.parametrize(
+    "java",
+    [
+        "void draw(Graphics g) { g.drawLine(0, 0, 9, 9); }",
+        'void fill(Map m) { m.put(1, new JLabel("S")); }',
+    ],
+)
+def test_parts_of_windows_can_be_parameters_and_elements(java: str) -> None:
+    found = port("A.java", f"import java.awt.Graphics; import javax.swing.JLabel; {HEAD}{java} }}")
+    assert found.left == []
+    assert found.windows == [("A.java", 1)]
 
 
 def test_the_lines_that_are_left_are_counted() -> None:
