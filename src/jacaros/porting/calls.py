@@ -94,12 +94,12 @@ def _listed(values: list[Py]) -> str:
 def _own(node: Node, name: str, arguments: list[Node], scope: Scope, value: Translate) -> Py:
     if scope.method is None and not scope.of.is_artifact:
         raise Unported(node)
-    method = scope.of.method(name, len(arguments))
     is_super = source(node).startswith("super.")
-    if method is not None and not is_super:
+    method = scope.of.method(name, len(arguments), is_super)
+    if method is not None:
         if method.is_static or not (scope.method and scope.method.is_static):
             values = [value(each, scope) for each in arguments]
-            target = scope.of.name if method.is_static else "self"
+            target = scope.of.name if method.is_static else "super()" if is_super else "self"
             return _awaited(
                 f"{target}.{method.name}({_listed(values)})", method.result, method.pauses, node, scope
             )
@@ -110,7 +110,8 @@ def _own(node: Node, name: str, arguments: list[Node], scope: Scope, value: Tran
         return found
     # An artifact has no other `init` than its own; that of a `GUIArtifact` opens its window.
     if name == "init" and scope.of.base not in scope.of.file.classes:
-        return Py("", VOID)
+        setup = scope.of.setup
+        return _awaited("self.setup()", VOID, setup.pauses, node, scope) if setup else Py("", VOID)
     return _of_artifact(node, name, arguments, scope, value)
 
 

@@ -112,17 +112,14 @@ def _name(node: Node, scope: Scope) -> Py:
 
 def member(name: str, node: Node, scope: Scope) -> Py:
     """Return a field of the class, or of the class around it."""
-    for owner in (scope.of, *(each for each in scope.of.file.classes.values() if each is not scope.of)):
+    own = scope.of.lineage
+    for owner in (*own, *(each for each in scope.of.file.classes.values() if each not in own)):
         if found := owner.members.get(name):
             if found.is_static:
                 python = owner.attribute(name)
                 is_near = scope.in_class_body and owner is scope.of
                 return Py(python if is_near else f"{owner.name}.{python}", found.type)
-            if (
-                owner is scope.of
-                and not (scope.method and scope.method.is_static)
-                and not scope.in_class_body
-            ):
+            if owner in own and not (scope.method and scope.method.is_static) and not scope.in_class_body:
                 return Py(f"self.{owner.attribute(name)}", found.type)
     raise Unported(node)
 

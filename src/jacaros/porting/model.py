@@ -143,7 +143,7 @@ class Method:
         return count >= wanted - 1 if self.takes_rest else count == wanted
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class JavaClass:
     """A class of the file, or of a file beside it.
 
@@ -161,6 +161,14 @@ class JavaClass:
     methods: list[Method] = attribute(default_factory=list)
     ports: list[str] = attribute(default_factory=list)
     is_inner: bool = False
+
+    @property
+    def lineage(self) -> list[JavaClass]:
+        """The class and those that it extends, as far as they are known."""
+        found = [self]
+        while (base := self.file.classes.get(found[-1].base)) and base not in found:
+            found.append(base)
+        return found
 
     @property
     def is_artifact(self) -> bool:
@@ -191,6 +199,11 @@ class JavaClass:
         return self.node.type == "class_declaration" and not self.is_artifact and self.base in known
 
     @property
+    def setup(self) -> Method | None:
+        """The method that `init` of ``GUIArtifact`` calls."""
+        return self.method("setup", 0) if self.lineage[-1].base == "GUIArtifact" else None
+
+    @property
     def _has_operations(self) -> bool:
         return any(method.roles for method in self.methods)
 
@@ -200,9 +213,10 @@ class JavaClass:
         clash = any(method.name == name for method in self.methods)
         return f"{name}_" if reserved or clash or keyword.iskeyword(name) else name
 
-    def method(self, name: str, count: int) -> Method | None:
-        """Return the method for a call."""
-        return next((each for each in self.methods if each.java == name and each.accepts(count)), None)
+    def method(self, name: str, count: int, of_super: bool = False) -> Method | None:
+        """Return the method for a call, which may be inherited; with *of_super* it must be."""
+        known = (each for owner in self.lineage[of_super:] for each in owner.methods)
+        return next((each for each in known if each.java == name and each.accepts(count)), None)
 
 
 @dataclass(slots=True)
@@ -242,9 +256,9 @@ def model_of(java: JavaFile, beside: Beside) -> FileModel:
         for name in sorted(_named(waiting.pop()) - asked):
             asked.add(name)
             other = beside(name)
-            if other is not None and not any(each.is_artifact for each in _add(other, model)):
+            if other is not None and any(each.name in model.classes for each in _add(other, model)):
                 waiting.append(other)
-    for found in model.classes.values():
+    for found in sorted(model.classes.values(), key=lambda each: len(each.lineage)):
         _find_pauses(found)
     return model
 
@@ -261,7 +275,9 @@ def _add(java: JavaFile, model: FileModel) -> list[JavaClass]:
         if name.startswith(_WINDOWS) and name.rpartition(".")[2] not in _DATA:
             model.windows.add(name.rpartition(".")[2])
     found = [_class_of(node, java, model) for node in classes(java.root)]
-    if java is model.java or not any(each.is_artifact for each in found):  # an artifact is a port of its own
+    bases = {each.base for each in model.classes.values()}
+    others = [each for each in found if each.is_artifact and each.name not in bases]
+    if java is model.java or not others:  # an artifact is a port of its own, unless another one extends it
         model.classes |= {each.name: each for each in found}
     return found
 
@@ -357,7 +373,8 @@ def _waits(call: Node, found: JavaClass) -> bool:
     target, name = call.child_by_field_name("object"), source(field(call, "name"))
     if target is not None and source(target) not in ("this", "super"):
         return (source(target), name) == ("Thread", "sleep")
-    own = found.method(name, len(children(field(call, "arguments"))))
+    of_super = target is not None and source(target) == "super"
+    own = found.method(name, len(children(field(call, "arguments"))), of_super)
     return own.pauses if own else name in _PAUSING
 
 

@@ -50,7 +50,9 @@ class Writer:
         every_class = list(self._model.classes.values())
         shown = [each for each in every_class if self._is_shown(each)]
         # What is not ported comes last: a comment there belongs to no class.
-        shown.sort(key=lambda each: (each.name not in self._model.ported, each.is_artifact))
+        shown.sort(
+            key=lambda each: (each.name not in self._model.ported, each.is_artifact, len(each.lineage))
+        )
         parts = [self._class(each) for each in shown]
         code = "\n\n\n".join("\n".join(part) for part in parts)
         if "functor_of(" in code:
@@ -105,7 +107,8 @@ class Writer:
         starts = [each for each in of.methods if _is_start(each, of)]
         for method in starts:
             lines += ["", *_indented(self._start(method, of, starts))]
-        if not starts and (of.is_environment or any(not each.is_static for each in of.members.values())):
+        has_values = any(not each.is_static for each in of.members.values())
+        if not starts and (of.is_environment or of.setup or has_values):
             lines += ["", *_indented(self._start(None, of, starts))]
         for method in of.methods:
             if method not in starts and not _is_left_out(method, of):
@@ -143,18 +146,20 @@ class Writer:
     def _fields(self, body: Body) -> Iterator[str]:
         """Give the fields their initial values."""
         of = body.scope.of
-        for member in of.members.values():
+        # An artifact with an `init` of its own need not call that of the class that it extends.
+        owners = of.lineage[::-1] if of.is_artifact else [of]
+        for owner, member in [(each, member) for each in owners for member in each.members.values()]:
             if member.is_static or member.type.name == LOGGER:
                 continue
             if self._model.is_window(member.type.name):
                 continue
-            target = f"self.{of.attribute(member.name)}"
+            target = f"self.{owner.attribute(member.name)}"
             try:
                 initial = value(member.value, body.scope).text if member.value else default_of(member.type)
             except Unported:
                 assert member.value is not None
-                body.left.append((of.java.name, member.value))
-                yield from self._comment(member.value, of)
+                body.left.append((owner.java.name, member.value))
+                yield from self._comment(member.value, owner)
                 yield f"{target} = None"
                 yield body.failure(line_of(member.value))
                 continue
@@ -169,14 +174,16 @@ class Writer:
         scope = Scope(of, method or Method(name, name, [], False, JavaType("void"), [], None, of.node))
         parameters = self._parameters(scope, of) if method else ["self"]
         body = Body(scope)
-        before = (
-            list(self._fields(body))
-            if of.base not in self._written
-            else [f"super().{name}()"]
-            if name == "__init__"
-            else []
-        )
+        before = ["super().__init__()"] if name == "__init__" and of.base in self._written else []
+        before += self._fields(body)
         lines = body.block(field(method.node, "body")) if method else []
+        pauses = method is not None and method.pauses
+        if method is None and of.is_artifact:
+            inherited = [each for owner in of.lineage[1:] for each in owner.methods if each.java == INIT]
+            call = "super().init(*arguments)" if inherited else "self.setup()" if of.setup else ""
+            pauses = any(each.pauses for each in (*inherited, of.setup) if each)
+            parameters += ["*arguments: object"] if inherited else []
+            lines = [f"{'await ' if pauses else ''}{call}"] if call else []
         self._keep(body)
         lines = [*before, *(lines if lines != ["pass"] or not before else [])]
         if of.is_environment:
@@ -184,7 +191,7 @@ class Writer:
         number = starts.index(method) if method in starts else 0
         head = [] if number == 0 else ["@initializer"]
         name = name if number == 0 else f"{INIT}_{len(scope.method.parameters) if scope.method else 0}"
-        word = "async def" if method and method.pauses else "def"
+        word = "async def" if pauses else "def"
         lines = _without_pass(lines)
         return [*head, f"{word} {name}({', '.join(parameters)}) -> None:", *_indented(lines or ["pass"])]
 

@@ -7,6 +7,7 @@ import pytest
 from porting_lab import Loaded, ported
 
 from jacaros.artifacts import Atom, Environment, OperationFailed, Out, Session, Structure
+from jacaros.porting import port
 from jacaros.runtime.clock import VirtualClock, run
 
 Act = Callable[[Session], Coroutine[Any, Any, None]]
@@ -164,3 +165,48 @@ def test_an_action_takes_its_time(use: Use) -> None:
         assert session.clock.now() - began == pytest.approx(0.5)
 
     use("Lamp", (), act)
+
+
+METERS = {
+    "Meter.java": """import cartago.*; public class Meter extends Artifact {
+        protected int n = 1;
+        void init(int start) { n = start; later(); defineObsProperty("n", n); }
+        @OPERATION void read() { n++; getObsProperty("n").updateValue(n); }
+        void later() { await_time(10); } }""",
+    "Double.java": """public class Double extends Meter {
+        int factor = 2;
+        void init(int start) { super.init(start + 1); n = n * factor; }
+        @OPERATION void readTwice() { read(); later(); read(); } }""",
+    "Steps.java": """public class Steps extends Meter {
+        int step = 5;
+        @OPERATION void jump() { n += step; read(); } }""",
+    "Screen.java": """public class Screen extends GUIArtifact {
+        public void setup() { defineObsProperty("n", 7); }
+        @OPERATION void read() { getObsProperty("n").updateValue(8); } }""",
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments", "operation", "value"),
+    [
+        ("Double", (3,), "readTwice", 10),
+        ("Double", (3,), "read", 9),
+        ("Steps", (3,), "jump", 9),
+        ("Screen", (), "read", 8),
+    ],
+)
+def test_an_artifact_keeps_what_it_inherits(
+    load: Loaded, name: str, arguments: tuple[int, ...], operation: str, value: int
+) -> None:
+    clock = VirtualClock()
+    done = port(f"{name}.java", METERS[f"{name}.java"], METERS.get)
+    assert not done.left
+    artifact_type = getattr(load(done.text), name)
+
+    async def main() -> None:
+        session = Session(Environment(clock), "bob")
+        session.focus(await session.make_artifact("it", artifact_type, arguments))
+        await session.act(operation)
+        assert session.value("n") == value
+
+    run(main, clock)
