@@ -85,6 +85,15 @@ def test_internal_topics_are_omitted(graph, left):
     assert not [name for name in seen["services"] if name.rsplit("/", 1)[-1] in parts]
 
 
+@pytest.mark.only("ros2")
+def test_services_of_a_node_that_has_ended_are_omitted(graph, left, right, topic):
+    own = f"{topic}/get_parameters"
+    right.serve("/ended/get_parameters", type_name="rcl_interfaces/srv/GetParameters")
+    right.serve(own)
+    graph.wait_until(lambda: own in left.contents()["services"], "a service that is only called so is seen")
+    assert "/ended/get_parameters" not in left.contents()["services"]
+
+
 @pytest.mark.needs("rosout")
 def test_lines_reach_the_log_of_the_graph(graph, left, right):
     ros1 = left.ros_version() == 1

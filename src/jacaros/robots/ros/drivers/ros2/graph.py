@@ -82,13 +82,17 @@ def contents(node: Ros2Node) -> GraphContents:
             topics[name] = _topic(node, name, types)
     services: dict[str, str] = {}
     for name, types in rcl.get_service_names_and_types():
-        owner, _, last = name.rpartition("/")
-        of_node = last in NODE_SERVICES and owner in nodes
+        # By type, not by node: the services of a node that has ended are known longer than the node.
+        of_node = name.rpartition("/")[2] in NODE_SERVICES and all(map(_is_of_nodes, types))
         if ACTION not in name and not of_node and rcl.count_services(name):
             services[name] = node.schema.usual_type(sorted(types)[0]) if types else ""
     # Names of tools begin with an underscore; ROS 2's own lists do not show them either.
     shown = (each for each in nodes if not each.rpartition("/")[2].startswith("_"))
     return GraphContents(topics, services, actions, tuple(shown))
+
+
+def _is_of_nodes(type_name: str) -> bool:
+    return type_name.startswith(("rcl_interfaces/", "type_description_interfaces/"))
 
 
 def _topic(node: Ros2Node, name: str, types: list[str]) -> TopicInfo:
