@@ -410,13 +410,14 @@ async def test_the_run_continues_while_a_question_about_it_is_answered(page, mon
         return explain(records, question, at)
 
     monkeypatch.setattr(service, "explain", explained)
+    await page.event("intention", agent="bob", state="waits")
     answer = asyncio.create_task(page.done("why", question="waiting"))
     await asyncio.to_thread(asked.wait, 20)
     await page.done("console", agent="bob", text="!go(hall)")
     await page.mas.agent("bob").until("at(hall)", timeout=5)
     assert not answer.done()
     may_answer.set()
-    assert "no agent has a goal" in str(await answer)
+    assert "bob waits for the condition found(_)" in str(await answer)
 
 
 @played(commanding)
