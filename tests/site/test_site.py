@@ -19,6 +19,8 @@ AXE = ROOT / "site" / "node_modules" / "axe-core" / "axe.min.js"
 PARTS = ("", "api", "decisions", "examples", "explanation", "how-to", "project", "reference", "tutorial")
 FOUND = "[...document.querySelectorAll('*')].flatMap((each) => [...(each.shadowRoot?.querySelectorAll('a') ?? [])])"
 """The results of a search, which the theme keeps in a tree of its own."""
+INDEXING = 180.0
+"""Seconds that the theme's worker may take for its index while the other parts of the tests run."""
 SCHEMES = {"light": "default", "dark": "slate"}
 """The theme's names of schemes."""
 LOOKS = (("light", 1440, 900), ("dark", 390, 844))
@@ -134,5 +136,5 @@ async def search(address: str) -> None:
         await page.open(address)
         await page.click(".md-search__button")
         await page.type("urgency")
-        await page.wait_for(f"{FOUND}.some((link) => link.href.includes('urgency'))")
+        await page.wait_for(f"{FOUND}.some((link) => link.href.includes('urgency'))", INDEXING)
         assert page.errors == []
