@@ -6,7 +6,6 @@ import threading
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from queue import Empty, SimpleQueue
 
@@ -83,7 +82,8 @@ class _Running:
             on_log=lambda text, _: self.output.put((text, True)),
         )
         async with mas:
-            self.stop = partial(asyncio.get_running_loop().call_soon_threadsafe, mas.stop)
+            loop = asyncio.get_running_loop()
+            self.stop = lambda: loop.call_soon_threadsafe(mas.stop)
             mas.add_artifact_types(*self._types)
             with record(mas, self._file), suppress(RunEnded):
                 focus = _mapped(mas) if options.mappings and len(self._programs) == 1 else []

@@ -165,7 +165,7 @@ class JavaClass:
     @property
     def lineage(self) -> list[JavaClass]:
         """The class and those that it extends, as far as they are known."""
-        found = [self]
+        found: list[JavaClass] = [self]
         while (base := self.file.classes.get(found[-1].base)) and base not in found:
             found.append(base)
         return found
