@@ -156,10 +156,18 @@ def test_the_command_writes_a_new_file_only(tmp_path: Path, capsys: pytest.Captu
 
 
 @pytest.mark.parametrize(
-    ("name", "error"), [("None.java", "file not found"), ("x.txt", "unsupported file type")]
+    ("name", "code", "error"),
+    [
+        ("None.java", 2, "file not found"),
+        ("x.txt", 2, "unsupported file type"),
+        ("Latin.java", 1, "line 1 contains a byte (0xe9) that is not UTF-8"),
+        ("Class.java", 1, "line 1 contains a NUL byte"),
+    ],
 )
 def test_the_command_explains_a_wrong_file(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, error: str
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, code: int, error: str
 ) -> None:
-    assert call(["port", str(tmp_path / name)]) == 2
+    (tmp_path / "Latin.java").write_bytes(b"// caf\xe9")
+    (tmp_path / "Class.java").write_bytes(b"\xca\xfe\xba\xbe\0")
+    assert call(["port", str(tmp_path / name)]) == code
     assert error in capsys.readouterr().err

@@ -73,7 +73,7 @@ def _read(path: Path) -> str:
         raise not_found(path, (".java",))
     try:
         return file_text(path)
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, UnicodeError) as error:
         raise JacarosError(f"cannot read `{path}`: {error}") from error
 
 
