@@ -150,6 +150,7 @@ MEANINGS: Mapping[str, str] = {
     "name": "name of the value in descriptions",
     "names": "atoms for values, such as `{0: off, 1: on}`",
     "node": "the node that has the parameter (default: our own)",
+    "offers": "types of the goals and beliefs that agents offer to the graph",
     "offset": "added after `scale`",
     "otherwise": "substitute for numbers that are not finite and for missing elements",
     "outputs": "fields of the answer, which the caller gets in variables",
@@ -163,6 +164,7 @@ MEANINGS: Mapping[str, str] = {
     "refresh": "properties to update to the newest values",
     "request": "fields of the request, with values or `$parameter`",
     "result": "fields of the result",
+    "roles": "roles of all callers in the graph (default: `user`)",
     "round": "decimals; `down` rounds to the integer below",
     "sample": "number of elements of a list, evenly spread, or their positions from 0 to 1",
     "scale": "factor: the agent's value is scale * value + offset",
@@ -227,7 +229,8 @@ def mappings() -> Schema:
     }
     artifact = declared(ArtifactPart("", fields.START), **own)
     offer = [keys_of(keys, "type") for keys in (offers.OF_ACTION, offers.OF_TOPIC)]
-    of_file = {"offers": named({"anyOf": offer}), "roles": {"anyOf": [TEXT, listed(TEXT)]}}
+    roles = {"anyOf": [TEXT, listed(TEXT)], **_meaning("roles")}
+    of_file = {"offers": {**named({"anyOf": offer}), **_meaning("offers")}, "roles": roles}
     several = {**artifact["properties"], **of_file, "artifacts": named(artifact)}
     return mapping(several)
 

@@ -16,9 +16,9 @@ from jacaros.runtime.files.yaml import Problem, YamlNode
 P = TypeVar("P")
 
 
-def entry(read: Callable[[YamlNode], object], key: str = "") -> FieldSpec:
-    """Return the entry of a key (by default the name of the field) whose value *read* converts."""
-    return FieldSpec("", "", key, lambda node, _: read(node))
+def entry(read: Callable[[YamlNode], object], key: str = "", words: str = "") -> FieldSpec:
+    """Return the entry of a key (by default the name of the field) whose value *read* converts, with its documentation."""
+    return FieldSpec(words, "", key, lambda node, _: read(node))
 
 
 def with_entries(part: P, entries: dict[str, YamlNode]) -> P:

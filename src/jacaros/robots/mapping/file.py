@@ -72,9 +72,9 @@ def _connected(node: YamlNode) -> bool | float:
     return True
 
 
-def _named(read: Callable[[YamlNode, YamlNode], object]) -> FieldSpec:
+def _named(read: Callable[[YamlNode, YamlNode], object], words: str) -> FieldSpec:
     """Return the entry of a mapping from names to parts, each read by *read*."""
-    return entry(lambda node: tuple(read(*pair) for pair in node.entries()))
+    return entry(lambda node: tuple(read(*pair) for pair in node.entries()), words=words)
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,17 +92,17 @@ class ArtifactPart:
 
     name: str
     place: FilePosition
-    description: Annotated[str, entry(YamlNode.text)] = ""
-    namespace: Annotated[str, entry(read_namespace)] = ""
-    tf_prefix: Annotated[str | None, entry(_tf_prefix)] = None
-    connected: Annotated[bool | float, entry(_connected)] = False
-    interfaces: Annotated[tuple[Path, ...], FieldSpec("")] = ()
-    properties: Annotated[tuple[TopicPart, ...], _named(read_property)] = ()
-    signals: Annotated[tuple[TopicPart, ...], _named(read_signal)] = ()
-    frames: Annotated[tuple[FramePart, ...], _named(read_frame)] = ()
-    parameters: Annotated[tuple[ParameterPart, ...], _named(read_parameter)] = ()
-    derived: Annotated[tuple[DerivedPart, ...], _named(read_derived)] = ()
-    operations: Annotated[tuple[OperationPart, ...], entry(_operations)] = ()
+    description: Annotated[str, entry(YamlNode.text, words="text for `jacaros describe` and editors")] = ""
+    namespace: Annotated[str, entry(read_namespace, words="prefix of relative names")] = ""
+    tf_prefix: Annotated[str | None, entry(_tf_prefix, words="prefix of frames (default: namespace)")] = None
+    connected: Annotated[bool | float, entry(_connected, words="true or seconds: `connected(Topic)`")] = False
+    interfaces: Annotated[tuple[Path, ...], FieldSpec("folders with definitions of message types")] = ()
+    properties: Annotated[tuple[TopicPart, ...], _named(read_property, "properties from topics")] = ()
+    signals: Annotated[tuple[TopicPart, ...], _named(read_signal, "signals from topics")] = ()
+    frames: Annotated[tuple[FramePart, ...], _named(read_frame, "properties from poses of frames")] = ()
+    parameters: Annotated[tuple[ParameterPart, ...], _named(read_parameter, "properties of parameters")] = ()
+    derived: Annotated[tuple[DerivedPart, ...], _named(read_derived, "properties made from others")] = ()
+    operations: Annotated[tuple[OperationPart, ...], entry(_operations, words="what agents can do")] = ()
 
     @property
     def topics(self) -> tuple[TopicPart, ...]:
