@@ -2,6 +2,7 @@
 
 import importlib
 import importlib.util
+import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
@@ -178,7 +179,7 @@ def _java_source(name: str, folders: Iterable[Path]) -> Path | None:
     """Return the Java file of a class; None without one."""
     file = f"{name.replace('.', '/')}.java"
     paths = (folder / inner / file for folder in folders for inner in _JAVA_FOLDERS)
-    return next(filter(Path.is_file, paths), None)
+    return next(filter(os.path.isfile, paths), None)
 
 
 def _in_java(name: str, source: Path, folder: Path) -> UnknownArtifactType:

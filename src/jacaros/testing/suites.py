@@ -114,7 +114,7 @@ def collect(paths: Sequence[Path]) -> list[Suite]:
     """
     found: dict[Path, Suite] = {}
     for path in paths:
-        for suite in _in_folder(path) if path.is_dir() else [_of_file(path)]:
+        for suite in _in_folder(path) if os.path.isdir(path) else [_of_file(path)]:
             found.setdefault(suite.path.resolve(), suite)
     _without_repetitions(found.values())
     return list(found.values())

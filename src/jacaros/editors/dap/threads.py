@@ -1,5 +1,6 @@
 """Intentions as threads, and their stacks of plans as stack frames."""
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -120,7 +121,7 @@ class Threads:
         assert level.frame is not None
         span = place_in_stack(level.frame, above)
         shown = self._numbered(level, shown_goal(level.frame))
-        if span is not None and (path := Path(span.file.name)).exists():
+        if span is not None and os.path.exists(path := Path(span.file.name)):
             place = {"line": span.line, "column": span.column}
             shown |= {"source": {"name": path.name, "path": str(path.resolve())}, **place}
         return shown

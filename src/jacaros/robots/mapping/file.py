@@ -1,5 +1,6 @@
 """Mapping files: found, read, and checked as far as possible without message types."""
 
+import os
 import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
@@ -261,7 +262,7 @@ def _interfaces(node: YamlNode, folder: Path) -> tuple[Path, ...]:
     found = []
     for item in each_of(node):
         path = (folder / item.text()).resolve()
-        if path.is_dir():
+        if os.path.isdir(path):
             found.append(path)
         elif isinstance(item.value, str):
             text = f"folder not found: `{item.value}`"

@@ -1,6 +1,7 @@
 """``jacaros new NAME``: a project that runs, from a template."""
 
 import keyword
+import os
 import re
 from collections.abc import Iterator
 from importlib.resources import files
@@ -59,7 +60,7 @@ def _check(path: Path) -> None:
             f"invalid name of a project: `{path.name}`; expected lower-case letters, digits and underscores",
             f"jacaros new {path.parent / (possible if usable else 'my_robot')}",
         )
-    if path.exists() or path.is_symlink():
+    if os.path.lexists(path):
         raise usage_error(f"`{path}` already exists", "choose another name, or delete it")
 
 

@@ -1,5 +1,6 @@
 """``jacaros port FILE.java``."""
 
+import os
 from functools import partial
 from pathlib import Path
 
@@ -62,7 +63,7 @@ def command(path: Path, output: Path | None) -> None:
 
 
 def _check(output: Path) -> None:
-    if output.exists():
+    if os.path.exists(output):
         raise usage_error(f"`{output}` already exists", "name another file, or delete it")
 
 

@@ -1,6 +1,7 @@
 """``jacaros run FILE``, and ``jacaros demo``."""
 
 import asyncio
+import os
 import shlex
 import sys
 from collections.abc import Callable, Sequence
@@ -355,7 +356,7 @@ def check_file(file: Path) -> None:
                 f"for a mapping file: jacaros run agent.asl --mapping {file}; for a world file: --world {file}",
             )
         return
-    if file.is_dir():
+    if os.path.isdir(file):
         raise usage_error(f"`{file}` is a folder", "name a .asl, .py, .mas2j or .jcm file in it")
     raise not_found(file, SUFFIXES)
 
@@ -389,7 +390,7 @@ def demo(save: bool, options: tuple[str, ...]) -> int:
 
 
 def _save(file: Path) -> None:
-    if file.exists():
+    if os.path.exists(file):
         raise usage_error(f"file exists: `{file}`", "rename it, or change to another folder")
     write_output(file, PROGRAM.read_bytes(), "change to another folder")
     click.echo(f"wrote {file}; run it with\n  jacaros run {file} {shlex.join(ROBOT)} --view")

@@ -87,7 +87,7 @@ def existing(path: Path, kinds: tuple[str, ...] = _PROGRAMS) -> Path:
     Raises:
         UsageError: the file does not exist (the error suggests similar names), or has another suffix.
     """
-    if path.is_dir():
+    if os.path.isdir(path):
         return path
     if not is_file(path):
         raise not_found(path, kinds)
@@ -124,7 +124,7 @@ def recorded_events(
     path: Path, into: "Recording", without: Container[str] = (), is_plain: bool = True
 ) -> Iterator[tuple[float, str, Any]]:
     """Read a recording like `read_recording`, and yield its events, which *into* does not keep (`Recording.streamed`)."""
-    if path.is_dir():
+    if os.path.isdir(path):
         raise usage_error(f"`{path}` is a folder", "name a recording in it")
     if not is_file(path):
         beside = [str(each) for each in path.parent.glob("*.*") if _RECORDINGS.intersection(each.suffixes)]

@@ -10,6 +10,7 @@ import builtins
 import importlib
 import importlib.util
 import itertools
+import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -413,9 +414,9 @@ class ProjectModules:
         for folder in self.folders:
             package = folder.joinpath(*parts)
             single = package.parent / f"{package.name}.py"
-            if single.is_file():
+            if os.path.isfile(single):  # unlike Path.is_file, it raises nothing for a name that is too long
                 return single
-            if package.is_dir() and next(package.glob("*.py"), None) is not None:
+            if os.path.isdir(package) and next(package.glob("*.py"), None) is not None:
                 return package
         return None
 
@@ -466,10 +467,10 @@ class ProjectModules:
         return module.__name__.removeprefix(f"{self._prefix}.")
 
     def _module(self, name: str, place: Path) -> ModuleType:
-        if place.is_file():
+        if os.path.isfile(place):
             return self._file(name, place)
         entry = place / "__init__.py"
-        return self._file(name, entry, place) if entry.is_file() else self._empty_package(name, place)
+        return self._file(name, entry, place) if os.path.isfile(entry) else self._empty_package(name, place)
 
     def _empty_package(self, name: str, folder: Path) -> ModuleType:
         module = self._modules.get(name) or ModuleType(f"{self._prefix}.{name}")

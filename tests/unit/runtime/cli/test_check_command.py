@@ -29,6 +29,10 @@ def found(outcome: Outcome, *arguments: str) -> list[tuple[str, int, str]]:
     return [(each["file"], each["line"], each["code"]) for each in json.loads(output)["diagnostics"]]
 
 
+LONG = 300 * "b"
+"""No file can have this name."""
+
+
 def test_a_correct_program_has_no_problems_and_a_wrong_one_all_in_one_pass(
     folder: Path, outcome: Outcome
 ) -> None:
@@ -141,6 +145,15 @@ def test_output_is_coloured_only_on_terminals(folder: Path, outcome, monkeypatch
     assert "\x1b[" in outcome("warned.asl")[1]
     monkeypatch.setenv("NO_COLOR", "1")
     assert "\x1b[" not in outcome("warned.asl")[1]
+
+
+def test_a_name_longer_than_that_of_a_file_is_only_a_name(folder: Path, outcome: Outcome) -> None:
+    (folder / "long.asl").write_text(f"!go.\n+!go <- {LONG}.x(1); act.\n")
+    assert [
+        each["code"] for each in json.loads(outcome("long.asl", "--format", "json")[1])["diagnostics"]
+    ] == ["unknown-internal-action"]
+    code, _, errors = outcome(f"{LONG}.asl")
+    assert (code, errors.splitlines()[0]) == (2, f"error: file not found: `{LONG}.asl`")
 
 
 def test_the_order_of_files_changes_nothing(folder: Path, outcome: Outcome) -> None:

@@ -12,6 +12,9 @@ from command_lab import Outcome
 from jacaros.robots.world import GroundTruth
 from jacaros.runtime.alarm import SIGNAL
 
+LONG = 300 * "b"
+"""No file can have this name."""
+
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
@@ -60,6 +63,11 @@ def test_run_is_the_default_command(folder: Path, outcome: Outcome) -> None:
         (["sim", "empty", "--ros", "ros1", "--domain-id", "3"], "--ros ros2"),
         (["describe", "ArtOdometri"], "did you mean `ArtOdometry`"),
         (["run", "hello.asl", "--maping", "robot.yaml"], "= help: did you mean `--mapping` or"),
+        (["run", f"{LONG}.asl"], "file not found"),
+        (["fmt", f"{LONG}.asl"], "file not found"),
+        (["describe", LONG], "unknown artifact type"),
+        (["new", LONG], "File name too long"),
+        (["run", "hello.asl", "--record", f"{LONG}.jsonl"], "File name too long"),
     ],
 )
 def test_wrong_usage_exits_with_code_2(folder: Path, outcome: Outcome, arguments: list[str], told: str):

@@ -247,7 +247,7 @@ def source_folders(base: Path, declared: Sequence[str] = (), above: Sequence[Pat
     written = [place / name for place in places for name in declared]
     usual = [place / name for place in places for name in _USUAL]
     required = written[: len(declared)]
-    return _distinct([*required, *(folder for folder in (*written, *usual) if folder.is_dir())])
+    return _distinct([*required, *(folder for folder in (*written, *usual) if os.path.isdir(folder))])
 
 
 def _distinct(folders: Iterable[Path]) -> tuple[Path, ...]:

@@ -1,5 +1,6 @@
 """Check programs and projects without running them."""
 
+import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import suppress
@@ -112,7 +113,7 @@ def check_files(
 
 def _check_paths(paths: Sequence[Path], mappings: Sequence[str], findings: Findings, named: bool) -> None:
     for path in paths:
-        if path.is_dir():
+        if os.path.isdir(path):
             _check_folder(path, findings)
             continue
         own = findings.apart()  # so that the order of files changes nothing

@@ -1,5 +1,6 @@
 """Read project files: from a `.mas2j` or `.jcm` file to a deployment."""
 
+import os
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
@@ -129,7 +130,7 @@ def _complete(path: Path, part: ProjectPart) -> None:
     declared = [folder for folder in part.source_paths if not folder.startswith("$")]
     programs = source_folders(base, declared)
     code = [base / folder for folder in part.code_paths or _CODE_PATHS] if path.suffix == _JCM else []
-    part.folders = tuple(dict.fromkeys([*programs, *(folder for folder in code if folder.is_dir())]))
+    part.folders = tuple(dict.fromkeys([*programs, *(folder for folder in code if os.path.isdir(folder))]))
     for agent in part.agents:
         agent.folders = programs
     if part.world is not None and is_file(base / part.world):
