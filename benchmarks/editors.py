@@ -16,8 +16,9 @@ from pathlib import Path
 from statistics import median
 
 from jacaros.agents.language.diagnostics import SourceFile
-from jacaros.editors import symbols
 from jacaros.editors.lsp.projects import Projects
+from jacaros.editors.symbols.completion import completions
+from jacaros.editors.symbols.model import Position
 
 LINES = 1000
 TIMES = 15
@@ -91,9 +92,9 @@ def main(edits: int) -> None:
         (unit,) = projects.units_of(path)
         assert unit.index is not None
         index, edited = unit.index, SourceFile(unit.name_of(path), f"{text}+!x : visited(room_1, N) <- !vis")
-        end = symbols.Position(LINES + 1, len(edited.lines[-1]) + 1)
-        assert symbols.completions(index, edited, end)
-        print("completion:", timed(lambda _: symbols.completions(index, edited, end)))
+        end = Position(LINES + 1, len(edited.lines[-1]) + 1)
+        assert completions(index, edited, end)
+        print("completion:", timed(lambda _: completions(index, edited, end)))
         if edits:
             _measure_memory(edits)
 
