@@ -43,7 +43,7 @@ class Python {
   }
 
   run(owner, source, port) {
-    this.owner?.leave();
+    if (this.owner !== owner) this.owner?.leave();
     this.owner = owner;
     this.begin();
     this.worker.postMessage({ run: source }, [port]);
@@ -134,6 +134,8 @@ class LiveProgram {
 
   async run() {
     this.clear();
+    clearTimeout(this.ending);
+    if (this.state !== "idle") python.end();  // its run before has not ended
     const source = this.source();
     this.began = performance.now();
     this.show("starting", python.worker ? "Starting …" : "Loading Python, about 27 MB, once …");

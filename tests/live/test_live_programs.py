@@ -73,6 +73,19 @@ async def test_a_changed_program_runs_and_an_endless_one_can_be_stopped(page: Pa
     await page.wait_for("document.querySelector('.jl').dataset.state === 'idle'", LONG)
 
 
+@pytest.mark.parametrize("stopped", [True, False], ids=["stopped", "running"])
+@in_browser
+async def test_a_program_runs_again_after_a_change(page: Page, address: str, stopped: bool) -> None:
+    await show(page, address, "#first_agent")
+    for word in ("first", "second", "third"):
+        await edit(page, f'!go.\n+!go <- .print("{word}"); .wait(1000000).')
+        await started(page)
+        await page.wait_for(f"{INSIDE}?.includes('{word}')", LONG)
+        if stopped:
+            await page.click(STOP)
+            await page.wait_for("document.querySelector('.jl').dataset.state === 'idle'", LONG)
+
+
 @in_browser
 async def test_an_error_has_its_line_and_help(page: Page, address: str) -> None:
     await show(page, address, "#first_agent")
