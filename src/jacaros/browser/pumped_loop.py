@@ -116,6 +116,8 @@ class PumpedLoop(Loop, asyncio.BaseEventLoop):
         clock: its time.
     """
 
+    has_threads = False
+
     def __init__(self, clock: PacedClock) -> None:
         super().__init__()
         self._clock = clock

@@ -393,19 +393,23 @@ def start_thread(work: Callable[[], T], loop: asyncio.AbstractEventLoop | None =
     """Run *work* in a daemon thread, during which a virtual clock continues; return a future with its result.
 
     At its end, a process waits for the threads of asyncio's own executor, forever if one never returns.
+
+    Raises:
+        RuntimeError: the machine has no thread left.
     """
     done: Future[T] = Future()
-    future = asyncio.wrap_future(done, loop=loop)
-    thread = threading.Thread(target=_work, args=(work, done), name="jacaros work", daemon=True)
-    try:
-        thread.start()
-    except RuntimeError:  # a browser has no threads, and a busy machine none left
-        (loop or asyncio.get_running_loop()).call_soon(_work, work, done)
-    return future
+    loop = loop or asyncio.get_running_loop()
+    if getattr(loop, "has_threads", True):
+        threading.Thread(target=_work, args=(work, done), name="jacaros work", daemon=True).start()
+    else:
+        loop.call_soon(_work, work, done)
+    return asyncio.wrap_future(done, loop=loop)
 
 
 class Loop(asyncio.BaseEventLoop):
     """The part of a loop that runs work of ``asyncio.to_thread`` in daemon threads."""
+
+    has_threads = True
 
     def run_in_executor(  # type: ignore[override]  # the typed signature differs between Python versions
         self, executor: Any, func: Any, *args: Any
